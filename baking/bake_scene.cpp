@@ -1,0 +1,171 @@
+#include "baking/bake_scene.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+namespace lambert {
+
+namespace {
+
+/// Bounds the first look at a large scene: a few minutes on two cores.
+constexpr double kMostRays = 4e9;
+constexpr double kBackFaceWarning = 0.01;
+
+class Stopwatch {
+public:
+    /// Seconds since the last call.
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> elapsed = now - last_;
+        last_ = now;
+        return elapsed.count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void requireLight(const Scene& scene) {
+    const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
+        return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
+    });
+    if (!lit) throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
+}
+
+/// Entries per row at a resolution, from rows of a few patches spread over the mesh.
+double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int resolution) {
+    const Hemicube method(mesh, rays, {resolution, true, 1});
+    RowAccumulator accumulator(mesh.size());
+    FormFactorRow row;
+    const std::size_t samples = std::min<std::size_t>(32, mesh.size());
+    std::size_t entries = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        method.row(static_cast<std::uint32_t>(i * mesh.size() / samples), accumulator);
+        accumulator.take(row);
+        entries += row.entries.size();
+    }
+    return static_cast<double>(entries) / static_cast<double>(samples);
+}
+
+int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t memoryLimit) {
+    const auto count = static_cast<double>(mesh.size());
+    int chosen = 0;
+    for (const int resolution : {128, 96, 64, 48, 32, 16}) {
+        chosen = resolution;
+        if (3.0 * resolution * resolution * count > kMostRays) continue;
+        const double bytes = count * (static_cast<double>(sizeof(FormFactorRow)) +
+                                      static_cast<double>(sizeof(FormFactor)) *
+                                          pilotEntriesPerRow(mesh, rays, resolution));
+        if (bytes <= static_cast<double>(memoryLimit)) break;
+    }
+    return chosen;
+}
+
+/// The material whose black back is met most by rays from the patches that meet most of them.
+std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
+    std::vector<std::uint32_t> patches(mesh.size());
+    std::iota(patches.begin(), patches.end(), 0U);
+    const auto loss = [&](std::uint32_t patch) {
+        const double back = matrix.rows[patch].back;
+        return back < 1.0 - 1e-6 ? static_cast<double>(mesh.area[patch]) * back : 0.0;
+    };
+    std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
+    patches.resize(std::min<std::size_t>(patches.size(), 200));
+    const Scene& scene = rays.scene();
+    std::vector<double> met(scene.materials.size(), 0.0);
+    constexpr int kResolution = 16;
+    RayPacket packet;
+    alignas(64) float weight[RayPacket::kSize];
+    const Hemicube hemicube(mesh, rays, {kResolution, false, 0});
+    for (const std::uint32_t patch : patches) {
+        for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], 0.0F, kResolution)) {
+            for (int row = 0; row < face.rows; row += 4) {
+                for (int column = 0; column < face.columns; column += 4) {
+                    hemicubeTile(face, column, row, kResolution, packet, weight);
+                    rays.closest(hemicube.origin(patch), packet);
+                    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+                        if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
+                        const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
+                        if (!scene.materials[material].twoSided)
+                            met[material] += static_cast<double>(weight[lane] * mesh.area[patch]);
+                    }
+                }
+            }
+        }
+    }
+    const auto most = std::max_element(met.begin(), met.end());
+    return *most > 0.0 ? scene.materials[static_cast<std::size_t>(most - met.begin())].name : std::string();
+}
+
+RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
+    RowQuality quality;
+    double receivingArea = 0.0;
+    double backArea = 0.0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const FormFactorRow& row = matrix.rows[i];
+        quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
+        if (row.back > 1.0 - 1e-6) continue; // inside something: nothing can reach it anyway
+        receivingArea += static_cast<double>(mesh.area[i]);
+        backArea += static_cast<double>(mesh.area[i]) * row.back;
+    }
+    quality.entries = matrix.entryCount();
+    quality.bytes = matrix.bytes();
+    quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
+    if (quality.backFaceFraction > kBackFaceWarning) quality.backFaceMaterial = mostMetBack(mesh, rays, matrix);
+    return quality;
+}
+
+void collectWarnings(BakedScene& result) {
+    const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
+    if (result.rows.backFaceFraction > kBackFaceWarning)
+        warn(fmt::format("{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
+                         "or make surfaces two-sided with --two-sided",
+                         100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
+    if (result.meshReport.undividedPolygons > 0)
+        warn(fmt::format("{} polygons could not be divided cleanly and stay whole", result.meshReport.undividedPolygons));
+    if (result.meshReport.ignoredContactPolygons > 0)
+        warn(fmt::format("{} polygons are not divided where others stand on them: the outlines cross",
+                         result.meshReport.ignoredContactPolygons));
+}
+
+} // namespace
+
+BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+    requireLight(scene);
+    BakedScene result;
+    Stopwatch watch;
+    const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == 0;
+    progress.begin("mesh", 0);
+    result.scene = std::make_shared<Scene>(prepareScene(scene, {.joinTriangles = !keepPolygons}, &result.prepareReport));
+    if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
+    result.rays = std::make_unique<RayCaster>(*result.scene);
+    result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
+    progress.end();
+    result.seconds.mesh = watch.lap();
+
+    result.resolution =
+        options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options.memoryLimit);
+    const Hemicube hemicube(result.mesh, *result.rays, {result.resolution, options.randomRotation, options.seed});
+    const FormFactorMatrix matrix = computeMatrix(hemicube, progress);
+    result.rayCount = hemicube.raysPerRow() * result.mesh.size();
+    result.rows = assessRows(result.mesh, *result.rays, matrix);
+    result.seconds.formFactors = watch.lap();
+
+    result.solution = solveJacobi(result.mesh, matrix, options.jacobi, progress);
+    result.seconds.solve = watch.lap();
+
+    progress.begin("bake", 0);
+    result.baked = reconstructAverage(result.mesh, *result.scene, result.solution, options.reconstruction,
+                                      &result.separatedFaces);
+    progress.end();
+    result.seconds.bake = watch.lap();
+    collectWarnings(result);
+    return result;
+}
+
+} // namespace lambert

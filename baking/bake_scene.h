@@ -1,0 +1,65 @@
+#pragma once
+
+#include "baking/reconstruction.h"
+#include "core/progress.h"
+#include "formfactors/hemicube.h"
+#include "meshing/build_patch_mesh.h"
+#include "meshing/prepare.h"
+#include "scene/ray_caster.h"
+#include "solver/jacobi.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// Everything between a scene and the light at its vertices.
+struct BakeOptions {
+    MeshOptions mesh;
+    std::optional<int> resolution; //!< of the hemicubes; none: the largest that keeps rays and memory in bounds
+    bool randomRotation = true;    //!< of the hemicubes
+    std::uint64_t seed = 1;
+    std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< bytes for the form factors, when the resolution is chosen
+    JacobiOptions jacobi;
+    ReconstructionOptions reconstruction;
+};
+
+/// Seconds of wall time per stage.
+struct BakeSeconds {
+    double mesh = 0.0, formFactors = 0.0, solve = 0.0, bake = 0.0;
+};
+
+/// How the computed rows keep their identities.
+struct RowQuality {
+    double largestClosureError = 0.0; //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
+    double backFaceFraction = 0.0;    //!< of the rays from patches that can receive light, area-weighted
+    std::string backFaceMaterial;     //!< whose back they meet most often; empty if they meet none
+    std::size_t entries = 0;          //!< of the matrix
+    std::size_t bytes = 0;
+};
+
+/// A scene with its light, and what a caller may want to know of how it came about.
+struct BakedScene {
+    std::shared_ptr<const Scene> scene; //!< as prepared: welded, joined; polygons as the rays see them
+    std::unique_ptr<RayCaster> rays;    //!< of `scene`
+    PatchMesh mesh;
+    RadiositySolution solution;
+    BakedMesh baked;
+
+    int resolution = 0;
+    std::uint64_t rayCount = 0;
+    PrepareReport prepareReport;
+    MeshReport meshReport;
+    RowQuality rows;
+    std::size_t separatedFaces = 0;
+    BakeSeconds seconds;
+    std::vector<std::string> warnings; //!< one line each
+};
+
+/// Prepares, meshes, computes form factors by hemicube, solves, and reconstructs at the vertices. Throws InputError if the
+/// scene has no light, Cancelled.
+BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress);
+
+} // namespace lambert

@@ -1,0 +1,67 @@
+#include "baking/byte_writer.h"
+#include "baking/encode.h"
+#include "baking/exposure.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace lambert {
+
+namespace {
+
+std::string header(const BakedMesh& mesh, const BakeOutputOptions& options) {
+    std::string text;
+    auto out = std::back_inserter(text);
+    fmt::format_to(out,
+                   "ply\n"
+                   "format binary_little_endian 1.0\n"
+                   "comment Lambert {}\n"
+                   "comment metres; red green blue = sRGB of clamp({}/pi * 2^exposure_ev)\n"
+                   "comment exposure_ev {}\n"
+                   "comment radiosity_r g b: B per m2, linear, Rec. 709\n"
+                   "element vertex {}\n",
+                   options.version, options.quantity == Quantity::Radiosity ? "B" : "E",
+                   options.exposure + 0.0F, mesh.positions.size());
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"})
+        fmt::format_to(out, "property float {}\n", name);
+    for (const char* name : {"red", "green", "blue"}) fmt::format_to(out, "property uchar {}\n", name);
+    for (const char channel : {'r', 'g', 'b'}) fmt::format_to(out, "property float radiosity_{}\n", channel);
+    if (options.quantity == Quantity::Irradiance)
+        for (const char channel : {'r', 'g', 'b'})
+            fmt::format_to(out, "property float irradiance_{}\n", channel);
+    fmt::format_to(out, "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+                   mesh.faces.size());
+    return text;
+}
+
+std::uint8_t srgbByte(float linear) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * srgbEncode(linear)));
+}
+
+} // namespace
+
+std::string encodePly(const BakedMesh& mesh, const BakeOutputOptions& options) {
+    const bool withIrradiance = options.quantity == Quantity::Irradiance;
+    std::string bytes = header(mesh, options);
+    const std::size_t vertexSize = withIrradiance ? 51 : 39;
+    bytes.reserve(bytes.size() + mesh.positions.size() * vertexSize + mesh.faces.size() * 17);
+    ByteWriter out(bytes);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        out.put(mesh.positions[v]);
+        out.put(mesh.normals[v]);
+        const Rgb colour = displayColour(shownRadiance(mesh, v, options.quantity), options.exposure);
+        for (int c = 0; c < 3; ++c) out.put(srgbByte(colour[c]));
+        out.put(mesh.radiosity[v]);
+        if (withIrradiance) out.put(mesh.irradiance[v]);
+    }
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        const std::uint8_t count = mesh.isQuad(face) ? 4 : 3;
+        out.put(count);
+        for (std::size_t k = 0; k < count; ++k) out.put(mesh.faces[face][k]);
+    }
+    return bytes;
+}
+
+} // namespace lambert

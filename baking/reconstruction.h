@@ -1,0 +1,23 @@
+#pragma once
+
+#include "baking/baked_mesh.h"
+#include "meshing/patch_mesh.h"
+#include "solver/solution.h"
+
+#include <cstddef>
+
+namespace lambert {
+
+struct ReconstructionOptions {
+    float creaseAngle = 0.52F; //!< radians; across a sharper edge nothing is averaged; 0 to π, default 30°
+};
+
+/// Light at the vertices as the mean of the patches around a vertex on its smoothing side, weighted by area and by the
+/// angle at the vertex. A patch inside another object counts as little as it sees of anything but back faces.
+///
+/// Face i of the result is patch i of the mesh. `separatedFaces`, if given, becomes the number of patches that could not
+/// be connected to their neighbours.
+BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const RadiositySolution& solution,
+                             const ReconstructionOptions& options, std::size_t* separatedFaces = nullptr);
+
+} // namespace lambert

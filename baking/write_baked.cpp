@@ -1,0 +1,67 @@
+#include "baking/write_baked.h"
+
+#include "baking/encode.h"
+#include "core/error.h"
+#include "core/whole_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <span>
+
+namespace lambert {
+
+namespace {
+
+void requireFinite(std::span<const glm::vec3> values, const char* what, const std::filesystem::path& path) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const glm::vec3& v = values[i];
+        if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+            throw SystemError(fmt::format("{}: not written: the {} of vertex {} is not finite ({}, {}, {})",
+                                          path.string(), what, i, v.x, v.y, v.z));
+    }
+}
+
+void writeObj(const BakedMesh& mesh, const std::filesystem::path& path, const BakeOutputOptions& options) {
+    std::filesystem::path materials = path;
+    materials.replace_extension(".mtl");
+    writeWholeFile(materials, encodeMtl(mesh));
+    writeWholeFile(path, encodeObj(mesh, options, materials.filename().string()));
+}
+
+} // namespace
+
+std::optional<BakedFormat> formatOf(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".glb") return BakedFormat::Glb;
+    if (extension == ".gltf") return BakedFormat::Gltf;
+    if (extension == ".ply") return BakedFormat::Ply;
+    if (extension == ".obj") return BakedFormat::Obj;
+    return std::nullopt;
+}
+
+const char* nameOf(Quantity quantity) { return quantity == Quantity::Radiosity ? "radiosity" : "irradiance"; }
+
+void writeBaked(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat format,
+                const BakeOutputOptions& options) {
+    requireFinite(mesh.positions, "position", path);
+    requireFinite(mesh.normals, "normal", path);
+    requireFinite(mesh.radiosity, "radiosity", path);
+    requireFinite(mesh.irradiance, "irradiance", path);
+    switch (format) {
+    case BakedFormat::Glb:
+        return writeWholeFile(path, encodeGltf(mesh, options, true));
+    case BakedFormat::Gltf:
+        return writeWholeFile(path, encodeGltf(mesh, options, false));
+    case BakedFormat::Ply:
+        return writeWholeFile(path, encodePly(mesh, options));
+    case BakedFormat::Obj:
+        return writeObj(mesh, path, options);
+    }
+}
+
+} // namespace lambert

@@ -1,0 +1,129 @@
+#include "cli/analytic_cases.h"
+
+#include "baking/bake_scene.h"
+#include "scene/example_scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+using Results = std::vector<AnalyticResult>;
+
+void add(Results& results, std::string name, double expected, double found, double tolerance) {
+    results.push_back({std::move(name), expected, found, tolerance});
+}
+
+/// B = B_e / (1 − ρ) in a closed box of one material.
+void furnace(Results& results, Progress& progress) {
+    const Material wall = greyMaterial("wall", 0.5F, 1.0F);
+    BakeOptions options;
+    options.mesh.patches = 1000;
+    options.jacobi.tolerance = 1e-7;
+    const BakedScene baked = bakeScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
+    double lowest = 1e30;
+    double highest = 0.0;
+    for (const RgbSum& b : baked.solution.radiosity) {
+        lowest = std::min(lowest, b.x);
+        highest = std::max(highest, b.x);
+    }
+    // Rows sum to 1, so every patch sees the same radiosity whatever the hemicubes' errors: only rounding is left.
+    add(results, "furnace box: smallest B", 2.0, lowest, 1e-5);
+    add(results, "furnace box: largest B", 2.0, highest, 1e-5);
+    add(results, "furnace box: row sums, largest error", 0.0, baked.rows.largestClosureError, 1e-6);
+    add(results, "furnace box: energy imbalance", 0.0, baked.solution.energy.imbalance(), 5e-3);
+}
+
+BakedScene bakeCube6(std::size_t patches, int resolution, Progress& progress) {
+    constexpr std::array reflectance{0.65F, 0.15F, 0.5F, 0.8F, 0.7F, 0.3F};
+    constexpr std::array emitted{0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.25F};
+    std::array<Material, 6> materials;
+    for (std::size_t i = 0; i < 6; ++i) materials[i] = greyMaterial(fmt::format("f{}", i), reflectance[i], emitted[i]);
+    BakeOptions options;
+    options.mesh.patches = patches;
+    options.resolution = resolution;
+    options.jacobi.tolerance = 1e-7;
+    return bakeScene(boxScene(glm::vec3(1.0F), materials), options, progress);
+}
+
+/// Means of B over the faces of a cube whose exact continuous solution is known.
+void cube6(Results& results, Progress& progress) {
+    constexpr std::array faceMean{0.287692, 0.070598, 0.214617, 1.22326, 0.302829, 0.37635};
+    constexpr std::array names{"x = 0", "x = 1", "y = 0", "y = 1", "z = 0", "z = 1"};
+    const BakedScene baked = bakeCube6(3456, 128, progress);
+    std::array<double, 6> sum{};
+    std::array<double, 6> area{};
+    for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
+        const auto a = static_cast<double>(baked.mesh.area[i]);
+        sum[baked.mesh.material[i]] += a * baked.solution.radiosity[i].x;
+        area[baked.mesh.material[i]] += a;
+    }
+    for (std::size_t face = 0; face < 6; ++face)
+        add(results, fmt::format("cube6: mean B of face {}", names[face]), faceMean[face], sum[face] / area[face],
+            0.005 * faceMean[face]);
+    add(results, "cube6: row sums, largest error", 0.0, baked.rows.largestClosureError, 1e-6);
+}
+
+/// Raw hemicube rows are not reciprocal; what they lose must fall with R and N.
+void energy(Results& results, Progress& progress) {
+    for (const auto& [patches, resolution] :
+         {std::pair(std::size_t{1000}, 64), std::pair(std::size_t{1000}, 128), std::pair(std::size_t{4000}, 256)}) {
+        const BakedScene baked = bakeCube6(patches, resolution, progress);
+        add(results, fmt::format("cube6: energy imbalance, {} patches, R = {}", baked.mesh.size(), resolution), 0.0,
+            baked.solution.energy.imbalance(), 5e-3);
+    }
+}
+
+/// F from one square to another, averaged over a refined mesh.
+double squareToSquare(const std::array<std::array<glm::vec3, 4>, 2>& squares, Progress& progress) {
+    const std::array materials{greyMaterial("one", 0.5F, 1.0F), greyMaterial("two", 0.5F)};
+    const Scene scene = prepareScene(quadScene(squares, materials));
+    const RayCaster rays(scene);
+    MeshOptions meshOptions;
+    meshOptions.patchLength = 1.0 / 24.0;
+    const PatchMesh mesh = buildPatchMesh(scene, meshOptions, progress);
+    const Hemicube method(mesh, rays, {.resolution = 256});
+    const FormFactorMatrix matrix = computeMatrix(method, progress);
+    double flux = 0.0;
+    double area = 0.0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        if (mesh.material[i] != 0) continue;
+        const auto a = static_cast<double>(mesh.area[i]);
+        area += a;
+        for (const FormFactor& entry : matrix.rows[i].entries)
+            if (mesh.material[entry.patch] == 1) flux += a * static_cast<double>(entry.value);
+    }
+    return flux / area;
+}
+
+void squares(Results& results, Progress& progress) {
+    constexpr double kParallel = 0.1998248957;
+    constexpr double kPerpendicular = 0.2000437761;
+    const std::array<glm::vec3, 4> floor{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+    const std::array<glm::vec3, 4> ceiling{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}};
+    const std::array<glm::vec3, 4> wall{{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}};
+    add(results, "parallel unit squares at distance 1: F", kParallel, squareToSquare({floor, ceiling}, progress),
+        0.005 * kParallel);
+    add(results, "perpendicular unit squares: F", kPerpendicular, squareToSquare({floor, wall}, progress),
+        0.005 * kPerpendicular);
+}
+
+} // namespace
+
+bool AnalyticResult::passed() const { return std::abs(found - expected) <= tolerance; }
+
+std::vector<AnalyticResult> runAnalyticCases(Progress& progress) {
+    Results results;
+    furnace(results, progress);
+    cube6(results, progress);
+    energy(results, progress);
+    squares(results, progress);
+    return results;
+}
+
+} // namespace lambert

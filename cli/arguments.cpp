@@ -1,0 +1,243 @@
+#include "cli/arguments.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "rendering/default_camera.h"
+#include "rendering/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace lambert {
+
+void addSceneArguments(CLI::App& command, SceneArguments& a) {
+    command.add_option("scene", a.path, "Scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
+    command.add_option("--unit", a.unit, "Metres per unit of the file (OBJ only; glTF is in metres) [1]")
+        ->type_name("METRES")
+        ->group("Scene");
+    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
+    command.add_option("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr")
+        ->type_name("MATERIAL=r,g,b")
+        ->group("Scene");
+    command.add_option("--reflectance", a.reflectance, "Diffuse reflectance of a material, 0 to 0.99")
+        ->type_name("MATERIAL=r,g,b")
+        ->group("Scene");
+}
+
+void addTransportArguments(CLI::App& command, TransportArguments& a) {
+    auto* length =
+        command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")->type_name("METRES")->group("Mesh");
+    command
+        .add_option("--patches", a.patches,
+                    "About so many patches; 0 keeps the input's polygons [5000]")
+        ->type_name("N")
+        ->excludes(length)
+        ->group("Mesh");
+    command.add_flag("--whole-contacts", a.wholeContacts, "Do not divide surfaces along the outlines of what stands on them")
+        ->group("Mesh");
+    command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(0.0, 180.0))
+        ->group("Mesh");
+    command.add_option("--method", a.method, "How form factors are computed [hemicube]")
+        ->check(CLI::IsMember({"hemicube"}))
+        ->group("Transport");
+    command
+        .add_option("--resolution", a.resolution,
+                    "Pixels along a hemicube's edge, even, 16 to 4096 [128, less if time or memory ask for it]")
+        ->type_name("R")
+        ->group("Transport");
+    command.add_option("--rotation", a.rotation, "Of the hemicubes about their normals [random]")
+        ->check(CLI::IsMember({"random", "fixed"}))
+        ->group("Transport");
+    command.add_option("--memory-limit", a.memoryLimit, "For the form factors, when the resolution is chosen [8 GiB]")
+        ->type_name("BYTES")
+        ->check(CLI::Range(1.0, 1e18))
+        ->group("Transport");
+    command.add_option("--solver", a.solver, "[jacobi]")->check(CLI::IsMember({"jacobi"}))->group("Solution");
+    command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
+        ->type_name("T")
+        ->check(CLI::Range(0.0, 1.0))
+        ->group("Solution");
+    command.add_option("--bounces", a.bounces, "At most so many bounces; 0: no limit [0]")
+        ->type_name("K")
+        ->check(CLI::Range(0, 1'000'000))
+        ->group("Solution");
+}
+
+void addRunArguments(CLI::App& command, RunArguments& a) {
+    command.add_option("--seed", a.seed, "Of all random numbers [1]")->type_name("S")->group("Run");
+    command.add_option("--threads", a.threads, "0: one per processor [0]")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024))
+        ->group("Run");
+    command.add_option("--json", a.json, "Writes the report as JSON")->type_name("FILE")->group("Run");
+    command.add_flag("--quiet", a.quiet, "Only errors and warnings")->group("Run");
+}
+
+void addPictureArguments(CLI::App& command, PictureArguments& a) {
+    command.add_option("--image", a.path, "Renders the baked mesh: linear .exr or tone-mapped .png")
+        ->type_name("FILE")
+        ->group("Picture");
+    command.add_option("--size", a.size, "[512x512]")->type_name("WxH")->group("Picture");
+    auto* camera =
+        command.add_option("--camera", a.camera, "A camera of the scene, by name")->type_name("NAME")->group("Picture");
+    auto* eye = command.add_option("--eye", a.eye, "Where a camera of one's own stands, in metres")
+                    ->type_name("x,y,z")
+                    ->excludes(camera)
+                    ->group("Picture");
+    auto* lookAt =
+        command.add_option("--look-at", a.lookAt, "What it looks at")->type_name("x,y,z")->needs(eye)->group("Picture");
+    eye->needs(lookAt);
+    command.add_option("--up", a.up, "[0,1,0]")->type_name("x,y,z")->needs(eye)->group("Picture");
+    command.add_option("--fov", a.fov, "Vertical field of view [45]")->type_name("DEGREES")->needs(eye)->group("Picture");
+    command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
+        ->check(CLI::Range(1, 64))
+        ->group("Picture");
+}
+
+glm::vec3 parseVector(const std::string& text, const std::string& option) {
+    glm::vec3 result(0.0F);
+    const char* at = text.data();
+    const char* const end = text.data() + text.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [next, error] = std::from_chars(at, end, result[axis]);
+        const bool separated = axis == 2 ? next == end : next != end && *next == ',';
+        if (error != std::errc() || !separated || !std::isfinite(result[axis]))
+            throw UsageError(fmt::format("{}: found \"{}\", expected three numbers like 1,2.5,-3", option, text));
+        at = next + 1;
+    }
+    return result;
+}
+
+namespace {
+
+/// Materials named on the command line, with their values.
+void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, const std::string& option, float largest,
+              const std::function<void(Material&, const Rgb&)>& apply) {
+    for (const std::string& setting : settings) {
+        const std::size_t separator = setting.rfind('=');
+        if (separator == std::string::npos)
+            throw UsageError(fmt::format("{}: found \"{}\", expected MATERIAL=r,g,b", option, setting));
+        const std::string name = setting.substr(0, separator);
+        const Rgb value = parseVector(setting.substr(separator + 1), option);
+        if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
+            throw UsageError(fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
+        bool found = false;
+        for (Material& material : scene.materials) {
+            if (material.name != name) continue;
+            apply(material, value);
+            found = true;
+        }
+        if (!found) {
+            std::vector<std::string> names;
+            for (const Material& material : scene.materials) names.push_back(material.name);
+            throw UsageError(fmt::format("{}: the scene has no material \"{}\", but {}", option, name,
+                                         fmt::join(names, ", ")));
+        }
+    }
+}
+
+} // namespace
+
+ReadResult readScene(const SceneArguments& a) {
+    if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
+        throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
+    ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
+    overrideMaterials(result.scene, a.emit, "--emit", 1e30F, [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
+    overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,
+             [](Material& m, const Rgb& value) { m.reflectance = value; });
+    return result;
+}
+
+BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
+    BakeOptions options;
+    options.mesh.patchLength = a.patchLength;
+    if (a.patchLength && !(*a.patchLength > 0.0))
+        throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
+    if (a.patches) options.mesh.patches = *a.patches;
+    options.mesh.splitContacts = !a.wholeContacts;
+    if (a.resolution && (*a.resolution < 16 || *a.resolution > 4096 || *a.resolution % 2 != 0))
+        throw UsageError(
+            fmt::format("--resolution: found {}, allowed are even numbers from 16 to 4096", *a.resolution));
+    options.resolution = a.resolution;
+    options.randomRotation = a.rotation == "random";
+    options.seed = run.seed;
+    options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
+    options.jacobi.tolerance = a.tolerance;
+    options.jacobi.bounces = a.bounces;
+    options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
+    return options;
+}
+
+namespace {
+
+std::array<int, 2> parseSize(const std::string& text) {
+    std::array<int, 2> size{};
+    const char* const end = text.data() + text.size();
+    const auto [middle, error] = std::from_chars(text.data(), end, size[0]);
+    bool good = error == std::errc() && middle != end && *middle == 'x';
+    if (good) {
+        const auto [last, secondError] = std::from_chars(middle + 1, end, size[1]);
+        good = secondError == std::errc() && last == end;
+    }
+    if (!good || size[0] < 1 || size[1] < 1 || size[0] > 32768 || size[1] > 32768)
+        throw UsageError(fmt::format("--size: found \"{}\", expected WIDTHxHEIGHT, each from 1 to 32768", text));
+    return size;
+}
+
+const Camera& namedCamera(const std::string& name, const Scene& scene) {
+    const auto it = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                 [&](const Camera& camera) { return camera.name == name; });
+    if (it != scene.cameras.end()) return *it;
+    std::vector<std::string> names;
+    for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+    throw UsageError(fmt::format("--camera: the scene has no camera \"{}\"{}{}", name,
+                                 names.empty() ? " and no other" : ", but ", fmt::join(names, ", ")));
+}
+
+} // namespace
+
+void checkCamera(const PictureArguments& a, const Scene& scene) {
+    if (!a.path.empty() && !a.camera.empty()) namedCamera(a.camera, scene);
+}
+
+void checkPicture(const PictureArguments& a) {
+    if (a.path.empty()) return;
+    imageFormatOf(a.path);
+    parseSize(a.size);
+    if (!a.eye.empty())
+        lookAtCamera(parseVector(a.eye, "--eye"), parseVector(a.lookAt, "--look-at"), parseVector(a.up, "--up"),
+                     static_cast<float>(a.fov.value_or(45.0)));
+}
+
+Picture picture(const PictureArguments& a, const Scene& scene, const RayCaster& rays) {
+    const auto [width, height] = parseSize(a.size);
+    Picture result{a.path, width, height, {}, a.samples};
+    if (!a.eye.empty()) {
+        result.camera = lookAtCamera(parseVector(a.eye, "--eye"), parseVector(a.lookAt, "--look-at"),
+                                     parseVector(a.up, "--up"), static_cast<float>(a.fov.value_or(45.0)));
+    } else if (!a.camera.empty()) {
+        result.camera = namedCamera(a.camera, scene);
+    } else if (!scene.cameras.empty()) {
+        result.camera = scene.cameras.front();
+    } else {
+        result.camera = defaultCamera(scene, rays, static_cast<float>(width) / static_cast<float>(height));
+    }
+    return result;
+}
+
+void applyThreads(const RunArguments& run) { setThreadCount(run.threads); }
+
+void logLine(const RunArguments& run, const std::string& line) {
+    if (!run.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void warnLine(const std::string& line) { fmt::print(stderr, "warning: {}\n", line); }
+
+} // namespace lambert

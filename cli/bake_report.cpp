@@ -1,0 +1,132 @@
+#include "cli/bake_report.h"
+
+#include "core/parallel.h"
+#include "core/process.h"
+#include "core/whole_file.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace lambert {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json cameraJson(const Picture& picture) {
+    const Camera& camera = picture.camera;
+    return {{"name", camera.name},
+            {"eye", jsonVector(glm::dvec3(camera.eye))},
+            {"direction", jsonVector(glm::dvec3(camera.direction))},
+            {"up", jsonVector(glm::dvec3(camera.up))},
+            {"vertical_fov_degrees", static_cast<double>(camera.verticalFov) * 180.0 / std::numbers::pi},
+            {"width", picture.width},
+            {"height", picture.height}};
+}
+
+Json optionsJson(const BakeReportInput& in) {
+    const BakedScene& baked = in.baked;
+    Json options;
+    options["unit"] = in.scene.unit.value_or(1.0);
+    options["two_sided"] = in.scene.twoSided;
+    options["emit"] = in.scene.emit;
+    options["reflectance"] = in.scene.reflectance;
+    const double length = baked.meshReport.patchLength;
+    options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
+    options["whole_contacts"] = in.transport.wholeContacts;
+    options["crease_angle"] = in.transport.creaseAngle;
+    options["resolution"] = baked.resolution;
+    options["rotation"] = in.transport.rotation;
+    options["tolerance"] = in.transport.tolerance;
+    options["bounces"] = in.transport.bounces;
+    options["threads"] = threadCount();
+    return options;
+}
+
+Json inputJson(const BakeReportInput& in) {
+    return {{"polygons", in.read.inputPolygons},
+            {"non_finite", in.read.nonFinitePolygons},
+            {"degenerate", in.read.degeneratePolygons},
+            {"split", in.read.splitPolygons},
+            {"collapsed", in.baked.prepareReport.collapsedPolygons},
+            {"joined_pairs", in.baked.prepareReport.joinedPairs}};
+}
+
+} // namespace
+
+Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+std::vector<MaterialLight> materialLight(const BakedScene& baked) {
+    const PatchMesh& mesh = baked.mesh;
+    std::vector<MaterialLight> lights(baked.scene->materials.size());
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        MaterialLight& light = lights[mesh.material[i]];
+        const auto area = static_cast<double>(mesh.area[i]);
+        if (!mesh.isBack(i)) light.area += area;
+        light.meanIrradiance += area * baked.solution.irradiance[i];
+        light.meanRadiosity += area * baked.solution.radiosity[i];
+    }
+    std::vector<MaterialLight> used;
+    for (std::size_t m = 0; m < lights.size(); ++m) {
+        if (!(lights[m].area > 0.0)) continue;
+        lights[m].name = baked.scene->materials[m].name;
+        lights[m].meanIrradiance /= lights[m].area;
+        lights[m].meanRadiosity /= lights[m].area;
+        used.push_back(lights[m]);
+    }
+    return used;
+}
+
+Json bakeReport(const BakeReportInput& in) {
+    const BakedScene& baked = in.baked;
+    const EnergyBalance& energy = baked.solution.energy;
+    Json report;
+    report["scene"] = in.scene.path.string();
+    report["patches"] = baked.mesh.size();
+    report["vertices"] = baked.baked.positions.size();
+    report["method"] = in.transport.method;
+    report["solver"] = in.transport.solver;
+    report["iterations"] = baked.solution.iterations;
+    report["residual"] = baked.solution.residual;
+    report["rays"] = baked.rayCount;
+    report["peak_memory_bytes"] = peakMemoryBytes();
+    report["options"] = optionsJson(in);
+    report["seed"] = in.run.seed;
+    report["version"] = LAMBERT_VERSION;
+    report["camera"] = in.picture ? cameraJson(*in.picture) : Json(nullptr);
+    report["exposure_ev"] = in.exposure;
+    report["input"] = inputJson(in);
+    report["form_factors"] = {{"entries", baked.rows.entries},
+                              {"bytes", baked.rows.bytes},
+                              {"largest_closure_error", baked.rows.largestClosureError},
+                              {"back_face_fraction", baked.rows.backFaceFraction}};
+    report["seconds"] = {{"read", in.readSeconds},
+                         {"mesh", baked.seconds.mesh},
+                         {"form_factors", baked.seconds.formFactors},
+                         {"solve", baked.seconds.solve},
+                         {"bake", baked.seconds.bake},
+                         {"write", in.writeSeconds},
+                         {"total", in.totalSeconds}};
+    report["energy"] = {{"emitted", jsonVector(energy.emitted)},     {"received", jsonVector(energy.received)},
+                        {"absorbed", jsonVector(energy.absorbed)},   {"back_faces", jsonVector(energy.backFaces)},
+                        {"escaped", jsonVector(energy.escaped)},     {"imbalance", energy.imbalance()}};
+    Json materials = Json::array();
+    for (const MaterialLight& light : materialLight(baked))
+        materials.push_back({{"name", light.name},
+                             {"area", light.area},
+                             {"mean_irradiance", jsonVector(light.meanIrradiance)},
+                             {"mean_radiosity", jsonVector(light.meanRadiosity)}});
+    report["materials"] = materials;
+    Json warnings = Json::array();
+    for (const auto* list : {&in.read.warnings, &baked.warnings})
+        for (const std::string& warning : *list) warnings.push_back(warning);
+    report["warnings"] = warnings;
+    return report;
+}
+
+void writeJson(const Json& json, const std::filesystem::path& path) {
+    // Names in files need not be UTF-8.
+    writeWholeFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+} // namespace lambert

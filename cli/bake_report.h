@@ -1,0 +1,45 @@
+#pragma once
+
+#include "baking/bake_scene.h"
+#include "cli/arguments.h"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace lambert {
+
+/// Area-weighted means over one material. A face counts once, whatever its number of sides; the irradiance of a
+/// two-sided face is the flux on both sides divided by that area.
+struct MaterialLight {
+    std::string name;
+    double area = 0.0; //!< m²
+    RgbSum meanIrradiance{0.0}, meanRadiosity{0.0};
+};
+
+/// One entry per material that is used, in the scene's order.
+std::vector<MaterialLight> materialLight(const BakedScene& baked);
+
+/// What the JSON report of a bake needs beside the result.
+struct BakeReportInput {
+    const BakedScene& baked;
+    const ReadReport& read;
+    const SceneArguments& scene;
+    const TransportArguments& transport;
+    const RunArguments& run;
+    std::optional<Picture> picture;
+    double exposure = 0.0;
+    double readSeconds = 0.0, writeSeconds = 0.0, totalSeconds = 0.0;
+};
+
+/// The report of one bake; keys are documented in docs/report.md.
+nlohmann::ordered_json bakeReport(const BakeReportInput& input);
+
+/// Writes a report to a file, whole.
+void writeJson(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+
+/// [r, g, b]
+nlohmann::ordered_json jsonVector(const glm::dvec3& v);
+
+} // namespace lambert

@@ -1,0 +1,54 @@
+#include "cli/commands.h"
+#include "cli/terminal_text.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+namespace {
+
+using lambert::ExitCode;
+
+int fail(ExitCode code, const std::string& message) {
+    fmt::print(stderr, "lambert: {}\n", lambert::oneLine(message));
+    return static_cast<int>(code);
+}
+
+int run(int argc, char** argv) {
+    CLI::App program("Finite-element radiosity: bakes the light of a scene into vertex colours.", "lambert");
+    program.set_version_flag("--version", LAMBERT_VERSION);
+    program.require_subcommand(1);
+    lambert::CommandRun command;
+    lambert::addBakeCommand(program, command);
+    lambert::addProbeCommand(program, command);
+    lambert::addInfoCommand(program, command);
+    lambert::addVerifyCommand(program, command);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return program.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
+    }
+    const ExitCode code = command();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        return fail(ExitCode::System, "standard output cannot be written");
+    return static_cast<int>(code);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    std::signal(SIGPIPE, SIG_IGN); // a pipe closed early is an error of writing, not a silent death
+    try {
+        return run(argc, argv);
+    } catch (const lambert::Error& error) {
+        return fail(error.exitCode(), error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(ExitCode::System, "not enough memory");
+    } catch (const std::exception& error) {
+        return fail(ExitCode::System, error.what());
+    }
+}

@@ -1,0 +1,138 @@
+#include "cli/arguments.h"
+#include "cli/bake_report.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/terminal_progress.h"
+#include "cli/terminal_text.h"
+
+#include "baking/probe.h"
+#include "core/whole_file.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+namespace lambert {
+
+namespace {
+
+struct ProbeArguments {
+    SceneArguments scene;
+    TransportArguments transport;
+    RunArguments run;
+    std::filesystem::path points, output;
+};
+
+/// The first six numbers of a line, separated by commas and blanks; fewer if something else comes.
+std::vector<float> leadingNumbers(std::string_view line) {
+    std::vector<float> numbers;
+    const auto skip = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size())); };
+    for (skip(); numbers.size() < 6; skip()) {
+        float value = 0.0F;
+        if (line.starts_with('+')) line.remove_prefix(1);
+        const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+        if (error != std::errc()) break;
+        numbers.push_back(value);
+        line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+        skip();
+        if (line.empty()) break;
+        if (line.front() != ',') {
+            numbers.clear(); // something hangs on the number
+            break;
+        }
+        line.remove_prefix(1);
+    }
+    return numbers;
+}
+
+ProbePoint toPoint(const std::vector<float>& n, const std::string& place) {
+    const ProbePoint point{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    const float length = glm::length(point.normal);
+    if (!std::isfinite(point.position.x + point.position.y + point.position.z) || !std::isfinite(length) || length == 0.0F)
+        throw InputError(fmt::format("{}: found a point that is not finite or a normal without length", place));
+    return point;
+}
+
+std::vector<ProbePoint> readPoints(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    if (!file || std::filesystem::is_directory(path))
+        throw InputError(fmt::format("{}: cannot be read", path.string()));
+    std::vector<ProbePoint> points;
+    std::string line;
+    bool headerAllowed = true;
+    for (std::size_t number = 1; std::getline(file, line); ++number) {
+        if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
+        const std::vector<float> numbers = leadingNumbers(line);
+        const std::string place = fmt::format("{}:{}", path.string(), number);
+        if (numbers.size() == 6)
+            points.push_back(toPoint(numbers, place));
+        else if (!headerAllowed || !numbers.empty())
+            throw InputError(fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place,
+                                         oneLine(line.substr(0, 60))));
+        headerAllowed = false;
+    }
+    if (points.empty()) throw InputError(fmt::format("{}: holds no points", path.string()));
+    return points;
+}
+
+std::string table(const std::vector<ProbePoint>& points, const std::vector<ProbeReading>& readings) {
+    std::string text = "# x,y,z,nx,ny,nz,E_r,E_g,E_b,stderr_r,stderr_g,stderr_b\n";
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto& [p, n] = points[i];
+        const RgbSum& e = readings[i].irradiance;
+        const RgbSum& s = readings[i].standardError;
+        text += fmt::format("{},{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}\n", p.x, p.y, p.z, n.x, n.y, n.z,
+                            e.x, e.y, e.z, s.x, s.y, s.z);
+    }
+    return text;
+}
+
+ExitCode probe(const ProbeArguments& a) {
+    if (!a.output.empty()) requireWritable(a.output);
+    if (!a.run.json.empty()) requireWritable(a.run.json);
+    const BakeOptions options = bakeOptions(a.transport, a.run);
+    applyThreads(a.run);
+    TerminalProgress progress(a.run.quiet);
+    const InterruptGuard interrupt(progress);
+    const std::vector<ProbePoint> points = readPoints(a.points);
+    const ReadResult read = readScene(a.scene);
+    for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
+    const BakedScene baked = bakeScene(read.scene, options, progress);
+    for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
+    const std::vector<ProbeReading> readings = probeIrradiance(baked, points);
+    const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
+    if (inSpace > 0)
+        logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));
+    const std::string text = table(points, readings);
+    if (a.output.empty())
+        fmt::print("{}", text);
+    else
+        writeWholeFile(a.output, text);
+    if (!a.run.json.empty())
+        writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, 0.0, 0.0, 0.0, 0.0}),
+                  a.run.json);
+    return ExitCode::Ok;
+}
+
+} // namespace
+
+void addProbeCommand(CLI::App& program, CommandRun& run) {
+    auto arguments = std::make_shared<ProbeArguments>();
+    CLI::App& command = *program.add_subcommand("probe", "Irradiance at points: virtual sensors");
+    addSceneArguments(command, arguments->scene);
+    command.add_option("points", arguments->points, "CSV with x,y,z,nx,ny,nz in metres; # starts a comment")
+        ->required()
+        ->type_name("POINTS.csv");
+    command.add_option("-o,--output", arguments->output, "CSV with E and its standard error [standard output]")
+        ->type_name("OUT.csv");
+    addTransportArguments(command, arguments->transport);
+    addRunArguments(command, arguments->run);
+    command.callback([arguments, &run] { run = [arguments] { return probe(*arguments); }; });
+}
+
+} // namespace lambert

@@ -1,0 +1,60 @@
+#include "cli/terminal_progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace lambert {
+
+namespace {
+
+constexpr std::chrono::milliseconds kUpdateInterval{100};
+
+} // namespace
+
+TerminalProgress::TerminalProgress(bool quiet) : visible_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+TerminalProgress::~TerminalProgress() { clearLine(); }
+
+void TerminalProgress::onBegin(std::string_view stage, std::uint64_t /*total*/) {
+    const std::lock_guard lock(mutex_);
+    stage_ = stage;
+    start_ = Clock::now();
+    nextUpdate_ = (start_ + kUpdateInterval).time_since_epoch().count();
+}
+
+void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
+    if (!visible_) return;
+    const Clock::time_point now = Clock::now();
+    auto due = nextUpdate_.load();
+    if (now.time_since_epoch().count() < due ||
+        !nextUpdate_.compare_exchange_strong(due, (now + kUpdateInterval).time_since_epoch().count()))
+        return;
+    const std::lock_guard lock(mutex_);
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double rate = static_cast<double>(done) / seconds;
+    std::string line = fmt::format("\r{:<14} ", stage_);
+    if (total > 0) {
+        constexpr int kWidth = 24;
+        const double part = static_cast<double>(done) / static_cast<double>(total);
+        const int filled = static_cast<int>(part * kWidth);
+        line += fmt::format("[{:#<{}}{:<{}}] {}/{}  {:.3g}/s  {:.0f} s left", "", filled, "", kWidth - filled, done,
+                            total, rate, static_cast<double>(total - done) / rate);
+    } else {
+        line += fmt::format("{}  {:.3g}/s", done, rate);
+    }
+    fmt::print(stderr, "{}\033[K", line);
+    std::fflush(stderr);
+    lineShown_ = true;
+}
+
+void TerminalProgress::onEnd() { clearLine(); }
+
+void TerminalProgress::clearLine() {
+    const std::lock_guard lock(mutex_);
+    if (lineShown_) fmt::print(stderr, "\r\033[K");
+    lineShown_ = false;
+}
+
+} // namespace lambert

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Writes the scenes of this folder: data/generate.py [FOLDER] (default: the folder of this file).
+
+Running it again gives the same bytes. Python's standard library only. Lengths are metres, y is up where there is an up.
+Faces are counter-clockwise seen from their front, which is the side that reflects and emits:
+rooms face inwards, objects face outwards and are closed.
+"""
+import math
+import sys
+from pathlib import Path
+
+from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_obj
+
+# ---- Shapes
+
+INSIDE_OF_BOX = {  # corners of each side as bits x y z, counter-clockwise seen from inside
+    "x0": ("000", "010", "011", "001"), "x1": ("100", "101", "111", "110"),
+    "y0": ("000", "001", "101", "100"), "y1": ("010", "110", "111", "011"),
+    "z0": ("000", "100", "110", "010"), "z1": ("001", "011", "111", "101"),
+}
+
+
+def box(low, high, material, inward=False):
+    """Six quads in the order x0 x1 y0 y1 z0 z1. `material` is one name for all sides, or a function of the side."""
+    faces = []
+    for side, corners in INSIDE_OF_BOX.items():
+        points = [tuple((low, high)[int(bit)][axis] for axis, bit in enumerate(corner)) for corner in corners]
+        name = material(side) if callable(material) else material
+        faces.append((name, points if inward else points[::-1]))
+    return faces
+
+
+def lathe(profile, sides, material):
+    """Solid of revolution about y. `profile`: (radius, y) from the bottom to the top, beginning and ending on the axis;
+    `material(k)` is that of the band between the profile's points k and k+1."""
+    def point(k, i):
+        radius, y = profile[k]
+        angle = 2 * math.pi * (i % sides) / sides
+        return (rounded(radius * math.cos(angle)), y, rounded(radius * math.sin(angle)))
+    faces = []
+    for k in range(len(profile) - 1):
+        for i in range(sides):
+            quad = [point(k, i), point(k + 1, i), point(k + 1, i + 1), point(k, i + 1)]
+            faces.append((material(k), [p for j, p in enumerate(quad) if p not in quad[:j]]))
+    return faces
+
+
+# ---- The Cornell box
+
+def cornell_box():
+    """Corners in millimetres, as published. The left wall is not quite planar, the blocks have no bottom."""
+    quads = {
+        "floor": [[(552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2)]],
+        "ceiling": [  # around the light
+            [(556, 548.8, 0), (556, 548.8, 227), (0, 548.8, 227), (0, 548.8, 0)],
+            [(556, 548.8, 332), (556, 548.8, 559.2), (0, 548.8, 559.2), (0, 548.8, 332)],
+            [(556, 548.8, 227), (556, 548.8, 332), (343, 548.8, 332), (343, 548.8, 227)],
+            [(213, 548.8, 227), (213, 548.8, 332), (0, 548.8, 332), (0, 548.8, 227)]],
+        "light": [[(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]],
+        "back": [[(549.6, 0, 559.2), (0, 0, 559.2), (0, 548.8, 559.2), (556, 548.8, 559.2)]],
+        "right": [[(0, 0, 559.2), (0, 0, 0), (0, 548.8, 0), (0, 548.8, 559.2)]],
+        "left": [[(552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)]],
+        "short": standing_block(165, [(130, 65), (82, 225), (240, 272), (290, 114)]),
+        "tall": standing_block(330, [(423, 247), (265, 296), (314, 456), (472, 406)]),
+    }
+    meshes = {name: [[(name, [tuple(x / 1000 for x in p) for p in quad]) for quad in faces]]
+              for name, faces in quads.items()}
+    white, green, red = Material((.725, .71, .68)), Material((.14, .45, .091)), Material((.63, .065, .05))
+    materials = {name: white for name in quads}
+    materials |= {"light": Material((.78, .78, .78), (17, 12, 4)), "right": green, "left": red}
+    return Scene(
+        "cornell_box",
+        ["The Cornell box in metres. Measurements: Cornell University Program of Computer Graphics, Cornell box data.",
+         "One material per surface: floor, ceiling, light, back, right (green), left (red), short, tall (the blocks)."],
+        materials, meshes, [Node(name, name) for name in meshes],
+        # Published: focal length 35 mm behind a film of 25 x 25 mm.
+        Camera((.278, .273, -.8), (.278, .273, 0), 2 * math.atan(.0125 / .035), 1))
+
+
+def standing_block(height, top):
+    """Top and four sides; `top` runs counter-clockwise seen from above."""
+    faces = [[(x, height, z) for x, z in top]]
+    for (x0, z0), (x1, z1) in zip(top, top[1:] + top[:1]):
+        faces.append([(x0, 0, z0), (x1, 0, z1), (x1, height, z1), (x0, height, z0)])
+    return faces
+
+
+# ---- Cases with exact answers
+
+def grey(reflectance, emitted_radiosity=0.0):
+    return Material((reflectance,) * 3, (emitted_radiosity / math.pi,) * 3)
+
+
+def room_case(name, size, reflectances, emitted, comment):
+    materials = {side: grey(*values) for side, values in zip(INSIDE_OF_BOX, zip(reflectances, emitted))}
+    meshes = {side: [[face]] for side, face in
+              zip(INSIDE_OF_BOX, box((0, 0, 0), size, lambda side: side, inward=True))}
+    return Scene(name, [*comment, "Seen from inside; x0 is the face at the least x, and so on."],
+                 materials, meshes, [Node(side, side) for side in meshes])
+
+
+def facing_squares(name, squares, comment):
+    names = "ab"
+    meshes = {n: [[(n, square)]] for n, square in zip(names, squares)}
+    return Scene(name, comment + ["Reflectance 0.5; a emits the radiosity 1, b nothing."],
+                 {"a": grey(.5, 1), "b": grey(.5)}, meshes, [Node(n, n) for n in names])
+
+
+def analytic_cases():
+    cases = [room_case("cube6", (1, 1, 1), (.65, .15, .5, .8, .7, .3), (0, 0, 0, 1, 0, .25),
+                       ["Unit cube; emitted radiosity 1 at y1, 0.25 at z1. Answers: reference/analytic.json, cube6."]),
+             room_case("room432", (4, 3, 2.5), (.5, .5, .5, .5, .2, .8), (0, 0, 0, 0, 0, 100),
+                       ["Room of 4 x 3 x 2.5 m whose ceiling z1 emits the radiosity 100; z0 is the floor.",
+                        "Answers: reference/analytic.json, room432."])]
+    corners = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]
+    faces = [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]  # face k is opposite corner k
+    meshes = {f"f{k}": [[(f"f{k}", [corners[i] for i in face])]] for k, face in enumerate(faces)}
+    materials = dict(zip(meshes, (grey(.2, 1), grey(.4), grey(.6), grey(.8))))
+    cases.append(Scene("tetrahedron",
+                       ["Regular tetrahedron seen from inside: every form factor between two faces is 1/3.",
+                        "f0 emits the radiosity 1. Answers: reference/analytic.json, tetrahedron."],
+                       materials, meshes, [Node(name, name) for name in meshes]))
+    bottom = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    cases.append(facing_squares("parallel_squares", [bottom, [(0, 0, 1), (0, 1, 1), (1, 1, 1), (1, 0, 1)]],
+                                ["Two unit squares facing each other at distance 1: F = 0.1998248957."]))
+    cases.append(facing_squares("perpendicular_squares", [bottom, [(0, 0, 0), (0, 1, 0), (0, 1, 1), (0, 0, 1)]],
+                                ["Two unit squares at a right angle with a common edge: F = 0.2000437761."]))
+    return cases
+
+
+def furnace_box():
+    return Scene("furnace_box",
+                 ["Closed box of 2 x 1.5 x 1 m seen from inside; all of it reflects 0.5 and emits the radiosity 1.",
+                  "Everywhere, exactly: radiosity B = 1/(1 - 0.5) = 2, irradiance 2, radiance 2/pi."],
+                 {"wall": grey(.5, 1)}, {"box": [box((0, 0, 0), (2, 1.5, 1), "wall", inward=True)]},
+                 [Node("box", "box")])
+
+
+# ---- A furnished room
+
+WIDTH, HEIGHT, DEPTH = 5.2, 2.7, 4.1
+
+
+def room_faces():
+    """The room, seen from inside, with a window niche in its wall at z = 0."""
+    names = {"x0": "wall_left", "x1": "wall_right", "y0": "floor", "y1": "ceiling", "z1": "wall_front"}
+    faces = [face for face in box((0, 0, 0), (WIDTH, HEIGHT, DEPTH), lambda side: names.get(side, ""), inward=True)
+             if face[0]]
+    left, right, sill, top, back = 1.6, 3.2, .9, 2.1, -.25
+
+    def upright(x0, x1, y0, y1, z, material):
+        return (material, [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)])
+    faces += [upright(0, left, 0, HEIGHT, 0, "wall_back"), upright(right, WIDTH, 0, HEIGHT, 0, "wall_back"),
+              upright(left, right, 0, sill, 0, "wall_back"), upright(left, right, top, HEIGHT, 0, "wall_back")]
+    niche = {"x0": "niche", "x1": "niche", "y0": "niche", "y1": "niche", "z0": "pane"}
+    faces += [face for face in box((left, sill, back), (right, top, 0), lambda side: niche.get(side, ""), inward=True)
+              if face[0]]
+    return faces
+
+
+def legs(half_x, half_z, thickness, height, material):
+    return [box((x - (thickness if x > 0 else 0), 0, z - (thickness if z > 0 else 0)),
+                (x + (thickness if x < 0 else 0), height, z + (thickness if z < 0 else 0)), material)
+            for x in (-half_x, half_x) for z in (-half_z, half_z)]
+
+
+def shelf_parts():
+    """Stands at the wall x = 0."""
+    parts = [box((0, 0, 0), (.3, 1.8, .02), "shelf"), box((0, 0, .98), (.3, 1.8, 1), "shelf"),
+             box((0, 0, .02), (.01, 1.8, .98), "shelf")]
+    return parts + [box((.01, y, .02), (.3, y + .02, .98), "shelf") for y in (0, .58, 1.16, 1.78)]
+
+
+def sphere(radius, sides, bands, material):
+    """Stands on y = 0."""
+    angles = [math.pi * k / bands for k in range(bands + 1)]
+    profile = [(rounded(radius * math.sin(a)), rounded(radius - radius * math.cos(a))) for a in angles]
+    return lathe(profile, sides, lambda k: material)
+
+
+def lamp_parts(cord, lamp, light):
+    """Hangs from y = 0 on a cord; `lamp` is "plate" or "shade". Its underside is the light."""
+    parts = [box((-.01, -cord, -.01), (.01, 0, .01), "metal")]
+    if lamp == "plate":
+        parts.append(box((-.16, -cord - .03, -.12), (.16, -cord, .12), lambda side: light if side == "y0" else "metal"))
+    else:
+        profile = [(0, -cord - .16), (.15, -cord - .16), (.05, -cord), (0, -cord)]
+        parts.append(lathe(profile, 8, lambda k: (light, "lampshade", "lampshade")[k]))
+    return parts
+
+
+def table_room():
+    warm, cool = (12, 8, 4), (6, 8, 11)
+    materials = {
+        "floor": Material((.42, .29, .18)), "ceiling": Material((.82, .81, .78)), "wall_left": Material((.66, .3, .2)),
+        "wall_right": Material((.24, .42, .5)), "wall_back": Material((.72, .66, .54)),
+        "wall_front": Material((.7, .7, .68)), "niche": Material((.8, .8, .8)), "pane": Material((.06, .08, .12)),
+        "table": Material((.5, .33, .17)), "chair": Material((.2, .34, .24)), "shelf": Material((.62, .5, .34)),
+        "book_red": Material((.55, .1, .09)), "book_blue": Material((.1, .17, .45)), "chest": Material((.58, .45, .12)),
+        "column": Material((.74, .73, .7)), "ball": Material((.68, .2, .34)), "metal": Material((.35, .35, .36)),
+        "lampshade": Material((.75, .7, .58)),
+        "light_1": Material((.7, .7, .7), warm), "light_2": Material((.7, .7, .7), cool),
+        "light_3": Material((.7, .7, .7), cool), "light_4": Material((.7, .7, .7), warm)}
+    meshes = {
+        "room": [room_faces()],
+        "table": [box((-.8, .71, -.45), (.8, .75, .45), "table"), *legs(.76, .41, .06, .71, "table")],
+        "chair": [box((-.21, .43, -.21), (.21, .47, .21), "chair"), *legs(.21, .21, .04, .43, "chair"),
+                  box((-.21, .47, .18), (.21, .89, .21), "chair")],
+        "shelf": shelf_parts(),
+        "book_red": [box((-.09, 0, -.02), (.09, .24, .02), "book_red")],
+        "book_blue": [box((-.08, 0, -.025), (.08, .2, .025), "book_blue")],
+        "chest": [box((-.35, 0, -.2), (.35, .45, .2), "chest")],
+        "column": [lathe([(0, 0), *((.15, y) for y in (0, .9, 1.8, HEIGHT)), (0, HEIGHT)], 16, lambda k: "column")],
+        "ball": [sphere(.12, 12, 8, "ball")],
+        "lamp_1": lamp_parts(.6, "shade", "light_1"), "lamp_2": lamp_parts(.4, "plate", "light_2"),
+        "lamp_3": lamp_parts(.4, "plate", "light_3"), "lamp_4": lamp_parts(.6, "shade", "light_4")}
+    nodes = [
+        Node("room", "room"), Node("table", "table", (2.5, 0, 2.1), 12.7),
+        Node("chair_1", "chair", (2.3, 0, 2.95), 18.1), Node("chair_2", "chair", (3.05, 0, 2.75), 4.9),
+        Node("chair_3", "chair", (2.75, 0, 1.25), 187.3), Node("chair_4", "chair", (1.95, 0, 1.45), 201.6),
+        Node("shelf", "shelf", (0, 0, 1.3)),
+        Node("book_1", "book_red", (.16, .6, 1.45), 7.3), Node("book_2", "book_blue", (.15, .6, 1.56), -11.2),
+        Node("book_3", "book_red", (.17, 1.18, 1.95), 31.9), Node("book_4", "book_blue", (.16, .6, 2.1), 3.7),
+        Node("chest", "chest", (3.3, 0, .45), 21.6), Node("column", "column", (.8, 0, .6)),
+        Node("ball", "ball", (2.15, .75, 2.1)),
+        Node("lamp_1", "lamp_1", (1.4, HEIGHT, 1), 9.1), Node("lamp_2", "lamp_2", (3.8, HEIGHT, 1.3), -21.3),
+        Node("lamp_3", "lamp_3", (1.3, HEIGHT, 3.1), 37.7), Node("lamp_4", "lamp_4", (3.7, HEIGHT, 3), 0)]
+    return Scene("table_room",
+                 ["Metres. A room with a table, chairs, a shelf with books, a chest, a column, a ball and four lamps.",
+                  "The room faces inwards; all else is made of closed parts that touch and do not overlap."],
+                 materials, meshes, nodes, Camera((4.85, 1.65, 3.8), (2.1, .85, 1.6), math.radians(55), 1.333333))
+
+
+def scenes():
+    """Every scene, with the file formats it is written in."""
+    both = ("gltf", "obj")
+    return [(cornell_box(), both), (furnace_box(), both), (table_room(), both),
+            *((case, ("obj",)) for case in analytic_cases())]
+
+
+def main():
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
+    writers = {"gltf": write_gltf, "obj": write_obj}
+    for scene, formats in scenes():
+        for file_format in formats:
+            writers[file_format](scene, folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,164 @@
+"""What a scene of data/generate.py is made of, and how it is written as OBJ and as glTF."""
+import base64
+import json
+import math
+import struct
+from typing import NamedTuple
+
+# A part is a list of faces, a face is a pair (material, corners). Every part of a movable object is convex and closed.
+
+
+class Material(NamedTuple):
+    kd: tuple               # diffuse reflectance, RGB
+    ke: tuple = (0, 0, 0)   # emitted radiance, RGB; the emitted radiosity is pi times this
+
+
+class Node(NamedTuple):
+    name: str
+    mesh: str               # several nodes may show one mesh
+    position: tuple = (0, 0, 0)
+    yaw: float = 0          # degrees about y
+
+
+class Camera(NamedTuple):
+    eye: tuple
+    look_at: tuple
+    vertical_fov: float     # radians
+    aspect: float
+
+
+class Scene(NamedTuple):
+    name: str
+    comment: list           # lines
+    materials: dict         # name -> Material
+    meshes: dict            # name -> list of parts
+    nodes: list
+    camera: Camera = None
+
+
+def rounded(x):
+    return round(x, 8) + 0.0  # + 0.0 turns -0.0 into 0.0
+
+
+def placed(node, point):
+    """A mesh's point in the scene."""
+    c, s = math.cos(math.radians(node.yaw)), math.sin(math.radians(node.yaw))
+    x, y, z = point
+    if node.yaw:
+        x, z = c * x + s * z, c * z - s * x
+    return tuple(rounded(a + b) for a, b in zip((x, y, z), node.position))
+
+
+def number(x):
+    return f"{x:.12g}"
+
+
+def short_float(x):
+    """The shortest decimal that is `x` in single precision."""
+    single = struct.pack("<f", x)
+    return next(float(text) for text in (f"{x:.{digits}g}" for digits in range(1, 10))
+                if struct.pack("<f", float(text)) == single)
+
+
+def write_obj(scene, folder):
+    lines = [f"# {line}" for line in scene.comment] + [f"mtllib {scene.name}.mtl"]
+    count = 0
+    for node in scene.nodes:
+        lines.append(f"o {node.name}")
+        index, faces, current = {}, [], None
+        for material, points in (face for part in scene.meshes[node.mesh] for face in part):
+            if material != current:
+                faces.append(f"usemtl {material}")
+                current = material
+            corners = [index.setdefault(placed(node, p), len(index) + 1) + count for p in points]
+            faces.append("f " + " ".join(map(str, corners)))
+        lines += ["v " + " ".join(map(number, p)) for p in index] + faces
+        count += len(index)
+    (folder / f"{scene.name}.obj").write_text("\n".join(lines) + "\n")
+
+    lines = [f"# {scene.comment[0]}"]
+    for name, material in scene.materials.items():
+        lines += [f"newmtl {name}"]
+        lines += [f"{key} " + " ".join(map(number, value)) for key, value in (("Kd", material.kd), ("Ke", material.ke))]
+    (folder / f"{scene.name}.mtl").write_text("\n".join(lines) + "\n")
+
+
+def gltf_material(name, material):
+    entry = {"name": name, "pbrMetallicRoughness": {
+        "baseColorFactor": [*material.kd, 1], "metallicFactor": 0, "roughnessFactor": 1}}
+    brightest = max(material.ke)
+    if brightest > 0:  # emissiveFactor ends at 1; a round strength keeps it short
+        strength = next(s for s in (1, 2, 5, 10, 20, 50, 100) if s >= brightest)
+        entry["emissiveFactor"] = [float(number(k / strength)) for k in material.ke]
+        if strength > 1:
+            entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+    return entry
+
+
+def gltf_camera_node(camera):
+    dx, dy, dz = (b - a for a, b in zip(camera.eye, camera.look_at))
+    yaw, pitch = math.atan2(-dx, -dz) / 2, math.atan2(dy, math.hypot(dx, dz)) / 2
+    rotation = (math.cos(yaw) * math.sin(pitch), math.sin(yaw) * math.cos(pitch),
+                -math.sin(yaw) * math.sin(pitch), math.cos(yaw) * math.cos(pitch))
+    return {"name": "camera", "camera": 0, "translation": list(camera.eye), "rotation": [rounded(q) for q in rotation]}
+
+
+def write_gltf(scene, folder):
+    """One node per object, one primitive per material, triangles fanned from a face's first corner."""
+    positions, indices, accessors, meshes = b"", b"", [], []
+    materials = list(scene.materials)
+    for mesh, parts in scene.meshes.items():
+        primitives = []
+        faces = [face for part in parts for face in part]
+        for material in dict.fromkeys(material for material, _ in faces):
+            index, triangles = {}, []
+            for _, points in (face for face in faces if face[0] == material):
+                corners = [index.setdefault(tuple(p), len(index)) for p in points]
+                for k in range(1, len(corners) - 1):
+                    triangles += [corners[0], corners[k], corners[k + 1]]
+            primitives.append({"attributes": {"POSITION": len(accessors)}, "indices": len(accessors) + 1,
+                               "material": materials.index(material)})
+            accessors.append({"bufferView": 0, "byteOffset": len(positions), "componentType": 5126, "type": "VEC3",
+                              "count": len(index), "min": [short_float(min(axis)) for axis in zip(*index)],
+                              "max": [short_float(max(axis)) for axis in zip(*index)]})
+            accessors.append({"bufferView": 1, "byteOffset": len(indices), "componentType": 5123, "type": "SCALAR",
+                              "count": len(triangles)})
+            positions += b"".join(struct.pack("<3f", *p) for p in index)
+            indices += struct.pack(f"<{len(triangles)}H", *triangles)
+        meshes.append({"name": mesh, "primitives": primitives})
+
+    nodes = []
+    for node in scene.nodes:
+        entry = {"name": node.name, "mesh": list(scene.meshes).index(node.mesh)}
+        if any(node.position):
+            entry["translation"] = list(node.position)
+        if node.yaw:
+            half = math.radians(node.yaw) / 2
+            entry["rotation"] = [0, rounded(math.sin(half)), 0, rounded(math.cos(half))]
+        nodes.append(entry)
+    gltf = {"asset": {"version": "2.0", "generator": "Lambert, data/generate.py", "extras": {"comment": scene.comment}}}
+    gltf_materials = [gltf_material(name, material) for name, material in scene.materials.items()]
+    if any("extensions" in material for material in gltf_materials):
+        gltf["extensionsUsed"] = ["KHR_materials_emissive_strength"]
+    if scene.camera:
+        nodes.append(gltf_camera_node(scene.camera))
+        gltf["cameras"] = [{"name": "camera", "type": "perspective", "perspective": {
+            "yfov": round(scene.camera.vertical_fov, 8), "aspectRatio": scene.camera.aspect, "znear": 0.01}}]
+    data = positions + indices
+    gltf |= {"scene": 0, "scenes": [{"name": scene.name, "nodes": list(range(len(nodes)))}], "nodes": nodes,
+             "meshes": meshes, "materials": gltf_materials, "accessors": accessors,
+             "bufferViews": [
+                 {"buffer": 0, "byteLength": len(positions), "byteStride": 12, "target": 34962},
+                 {"buffer": 0, "byteOffset": len(positions), "byteLength": len(indices), "target": 34963}],
+             "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64,"
+                          + base64.b64encode(data).decode()}]}
+
+    def dump(value):
+        return json.dumps(value, separators=(", ", ": "))
+    entries = []
+    for key, value in gltf.items():  # one element of a list per line
+        if isinstance(value, list) and isinstance(value[0], dict):
+            entries.append(f'"{key}": [\n  ' + ",\n  ".join(map(dump, value)) + "\n]")
+        else:
+            entries.append(f'"{key}": {dump(value)}')
+    (folder / f"{scene.name}.gltf").write_text("{\n" + ",\n".join(entries) + "\n}\n")

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "formfactors/form_factor_method.h"
+#include "meshing/patch_mesh.h"
+#include "scene/ray_caster.h"
+
+namespace lambert {
+
+struct HemicubeOptions {
+    int resolution = 128;      //!< pixels along an edge of the top face; even, 16 to 4096
+    bool randomRotation = true; //!< turns each patch's hemicube about its normal by an angle of its own
+    std::uint64_t seed = 1;    //!< of the angles
+};
+
+/// Form factors from the centre of each patch through the pixels of a half cube, traced as packets of 4 × 4 pixels.
+///
+/// M. F. Cohen, D. P. Greenberg, "The hemi-cube: a radiosity solution for complex environments", SIGGRAPH 1985.
+class Hemicube : public FormFactorMethod {
+public:
+    /// `mesh` and `rays` (of the same scene) must outlive the method. Throws UsageError for a resolution out of range.
+    Hemicube(const PatchMesh& mesh, const RayCaster& rays, const HemicubeOptions& options);
+
+    void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
+    std::size_t patchCount() const override { return mesh_.size(); }
+    std::uint64_t raysPerRow() const override;
+
+    /// The row of a point instead of a patch: `origin` as is, unit `normal`, hemicube turned by `angle` (radians).
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, float angle, RowAccumulator& accumulator) const;
+
+    /// Where the rays of a patch's row start: above its centre. Shared with whoever traces the same rays.
+    glm::vec3 origin(std::uint32_t patch) const;
+    float angle(std::uint32_t patch) const; ///< radians
+
+private:
+    const PatchMesh& mesh_;
+    const RayCaster& rays_;
+    HemicubeOptions options_;
+    float pixelScale_; ///< ΔA / π, divided by the sum of all pixels' delta form factors
+};
+
+/// One face of a turned hemicube: the pixel at (u, v) looks along axis + u·axisU + v·axisV.
+struct HemicubeFace {
+    glm::vec3 axis, axisU, axisV;
+    int columns, rows; ///< pixels; u covers [−1, 1], v covers [−1, 1] on the top and [0, 1] on the sides
+    bool top;
+};
+
+/// Top first, then the four sides.
+std::array<HemicubeFace, 5> hemicubeFaces(const glm::vec3& normal, float angle, int resolution);
+
+/// Directions of a tile of 4 × 4 pixels, and their delta form factors before scaling: 1/(u²+v²+1)² on the top,
+/// v/(u²+v²+1)² on the sides, 0 for pixels past the face's end (which are inactive).
+void hemicubeTile(const HemicubeFace& face, int column, int row, int resolution, RayPacket& packet,
+                  float (&weight)[RayPacket::kSize]);
+
+} // namespace lambert

@@ -1,0 +1,238 @@
+#include "meshing/build_patch_mesh.h"
+
+#include "core/error.h"
+#include "meshing/contacts.h"
+#include "meshing/edge_division.h"
+#include "meshing/face_mesher.h"
+#include "meshing/prepare.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kMostPatches = 2e8;
+constexpr double kUnrefined = std::numeric_limits<double>::infinity();
+
+/// Whether the polygon's chart is affine: a triangle or a parallelogram.
+bool hasAffineChart(const Scene& scene, const Polygon& polygon) {
+    if (!polygon.isQuad()) return true;
+    const glm::vec3 a = corner(scene, polygon, 0);
+    const glm::vec3 c = corner(scene, polygon, 2);
+    const glm::vec3 skew = (a - corner(scene, polygon, 1)) + (c - corner(scene, polygon, 3));
+    return glm::length(skew) <= 1e-5F * glm::distance(a, c);
+}
+
+/// Collects the patches of one polygon after the other.
+class PatchMeshBuilder {
+public:
+    PatchMeshBuilder(const Scene& scene, MeshReport& report) : scene_(scene), report_(report) {
+        mesh_.positions = scene.positions;
+    }
+
+    std::vector<glm::vec3>& positions() { return mesh_.positions; }
+
+    void addWhole(std::uint32_t polygon) { addGrid(polygon, {scene_.polygons[polygon].vertices}, 1, 1); }
+
+    void addGrid(std::uint32_t polygon, const std::vector<Corners>& faces, std::size_t columns, std::size_t rows) {
+        const std::size_t first = mesh_.size();
+        append(polygon, faces);
+        const bool complete = mesh_.size() - first == faces.size();
+        if (complete && (faces.size() == 1 || hasAffineChart(scene_, scene_.polygons[polygon])))
+            mesh_.lookup.addGrid(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(columns),
+                                 static_cast<std::uint32_t>(rows));
+        else
+            addLocated(polygon, first);
+    }
+
+    void addFaces(std::uint32_t polygon, const std::vector<Corners>& faces) {
+        const std::size_t first = mesh_.size();
+        append(polygon, faces);
+        addLocated(polygon, first);
+    }
+
+    PatchMesh finish() {
+        mesh_.frontCount = mesh_.size();
+        for (std::uint32_t patch = 0; patch < mesh_.frontCount; ++patch) addBack(patch);
+        return std::move(mesh_);
+    }
+
+private:
+    void addLocated(std::uint32_t polygon, std::size_t first) {
+        mesh_.lookup.addPatches(scene_, scene_.polygons[polygon], static_cast<std::uint32_t>(first),
+                                std::span(mesh_.corners).subspan(first), mesh_.positions);
+    }
+
+    void append(std::uint32_t polygon, const std::vector<Corners>& faces) {
+        const std::size_t first = mesh_.size();
+        for (const Corners& corners : faces) {
+            // In double: the normal of a sliver must still be a normal, Embree aborts on rays that are not finite.
+            const glm::dvec3 a(mesh_.positions[corners[0]]);
+            const glm::dvec3 b = glm::dvec3(mesh_.positions[corners[1]]) - a;
+            const glm::dvec3 c = glm::dvec3(mesh_.positions[corners[2]]) - a;
+            const glm::dvec3 d = corners[3] == kNone ? c : glm::dvec3(mesh_.positions[corners[3]]) - a;
+            const glm::dvec3 one = 0.5 * glm::cross(b, c);
+            const glm::dvec3 two = 0.5 * glm::cross(c, d);
+            glm::dvec3 areaVector = one + two;
+            const bool lastHope = &corners == &faces.back() && mesh_.size() == first;
+            if (!(static_cast<float>(glm::length(areaVector)) > 0.0F)) {
+                if (!lastHope) {
+                    ++report_.degeneratePatches;
+                    continue;
+                }
+                areaVector = glm::dvec3(lambert::areaVector(scene_, scene_.polygons[polygon]));
+            }
+            const double area = glm::length(areaVector);
+            const double areaOne = glm::length(one);
+            const double areaTwo = glm::length(two);
+            const glm::dvec3 offset =
+                (areaOne * (b + c) + areaTwo * (c + d)) / (3.0 * std::max(areaOne + areaTwo, 1e-300));
+            push(corners, glm::vec3(a + offset), glm::vec3(areaVector / area), static_cast<float>(area), polygon);
+        }
+    }
+
+    void push(const Corners& corners, const glm::vec3& centroid, const glm::vec3& normal, float area,
+              std::uint32_t polygon) {
+        const std::uint32_t materialIndex = scene_.polygons[polygon].material;
+        const Material& material = scene_.materials[materialIndex];
+        mesh_.corners.push_back(corners);
+        mesh_.centroid.push_back(centroid);
+        mesh_.normal.push_back(normal);
+        mesh_.area.push_back(area);
+        mesh_.reflectance.push_back(material.reflectance);
+        mesh_.emittedRadiosity.push_back(std::numbers::pi_v<float> * material.emittedRadiance);
+        mesh_.polygon.push_back(polygon);
+        mesh_.material.push_back(materialIndex);
+    }
+
+    void addBack(std::uint32_t patch) {
+        const std::uint32_t polygon = mesh_.polygon[patch];
+        if (!scene_.materials[mesh_.material[patch]].twoSided) return;
+        if (patch == 0 || mesh_.polygon[patch - 1] != polygon)
+            mesh_.lookup.setBack(polygon, static_cast<std::uint32_t>(mesh_.size()));
+        Corners reversed = mesh_.corners[patch];
+        std::reverse(reversed.begin(), reversed.begin() + (reversed[3] == kNone ? 3 : 4));
+        push(reversed, mesh_.centroid[patch], -mesh_.normal[patch], mesh_.area[patch], polygon);
+    }
+
+    const Scene& scene_;
+    MeshReport& report_;
+    PatchMesh mesh_;
+};
+
+/// One division of the scene at a given target length.
+PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector<PlanarContact>& contacts,
+                 double length, Progress& progress, MeshReport& report) {
+    report = MeshReport{};
+    report.patchLength = length;
+    PatchMeshBuilder builder(scene, report);
+    const EdgeDivision division(scene, index, length, builder.positions());
+    auto contact = contacts.begin();
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        if (i % 1024 == 0) progress.throwIfCancelled();
+        const Polygon& polygon = scene.polygons[i];
+        std::array<EdgeDivision::Side, 4> sides;
+        FaceOutline outline;
+        bool divided = false;
+        bool inserted = false;
+        for (int k = 0; k < polygon.size(); ++k) {
+            auto& side = sides[static_cast<std::size_t>(k)];
+            side = division.side(polygon, k);
+            outline.border.insert(outline.border.end(), side.vertices.begin(), side.vertices.end() - 1);
+            divided = divided || side.vertices.size() > 2;
+            inserted = inserted || side.segments > 1;
+        }
+        while (contact != contacts.end() && contact->polygon < i) ++contact;
+        if (contact != contacts.end() && contact->polygon == i)
+            outline.contacts = contactLines(*contact, scene, division);
+        if (!divided && outline.contacts.empty()) {
+            builder.addWhole(i);
+            continue;
+        }
+        if (polygon.isQuad() && !inserted && outline.contacts.empty() &&
+            sides[0].vertices.size() == sides[2].vertices.size() &&
+            sides[1].vertices.size() == sides[3].vertices.size()) {
+            const auto faces = gridFace({sides[0].vertices, sides[1].vertices, sides[2].vertices, sides[3].vertices},
+                                        builder.positions());
+            builder.addGrid(i, faces, sides[0].vertices.size() - 1, sides[1].vertices.size() - 1);
+            continue;
+        }
+        outline.frame = planeFrame(scene, polygon);
+        auto faces = triangulateFace(outline, length, builder.positions());
+        if (faces && !outline.contacts.empty()) ++report.contactPolygons;
+        if (!faces && !outline.contacts.empty()) {
+            ++report.ignoredContactPolygons;
+            outline.contacts.clear();
+            faces = triangulateFace(outline, length, builder.positions());
+        }
+        if (faces) {
+            builder.addFaces(i, *faces);
+        } else {
+            ++report.undividedPolygons;
+            builder.addWhole(i);
+        }
+    }
+    return builder.finish();
+}
+
+PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
+    PatchMeshBuilder builder(scene, report);
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) builder.addWhole(i);
+    report.patchLength = kUnrefined;
+    return builder.finish();
+}
+
+double totalArea(const Scene& scene) {
+    return std::accumulate(scene.polygons.begin(), scene.polygons.end(), 0.0, [&](double sum, const Polygon& polygon) {
+        const double area = static_cast<double>(glm::length(areaVector(scene, polygon)));
+        return sum + (scene.materials[polygon.material].twoSided ? 2.0 * area : area);
+    });
+}
+
+} // namespace
+
+PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
+    if (options.patchLength && !(*options.patchLength > 0.0))
+        throw UsageError(fmt::format("patch length: found {}, allowed is a length above 0", *options.patchLength));
+    MeshReport ownReport;
+    MeshReport& counts = report != nullptr ? *report : ownReport;
+    counts = MeshReport{};
+    if (!options.patchLength && options.patches == 0) return keepPolygons(scene, counts);
+
+    const VertexIndex index(scene.positions);
+    const std::vector<PlanarContact> contacts =
+        options.splitContacts ? findContacts(scene, index) : std::vector<PlanarContact>{};
+    if (options.patchLength) {
+        const double predicted = totalArea(scene) / (*options.patchLength * *options.patchLength);
+        if (predicted > kMostPatches)
+            throw UsageError(fmt::format("patch length {} m: would make about {:.0f} patches, allowed are {:.0f}",
+                                         *options.patchLength, predicted, kMostPatches));
+        return divide(scene, index, contacts, *options.patchLength, progress, counts);
+    }
+    if (static_cast<double>(options.patches) > kMostPatches)
+        throw UsageError(fmt::format("patches: found {}, allowed are {:.0f}", options.patches, kMostPatches));
+
+    // The number of patches falls about as 1 / length² until only the input's polygons are left.
+    const auto wanted = static_cast<double>(options.patches);
+    if (static_cast<double>(scene.polygons.size()) >= wanted)
+        return divide(scene, index, contacts, kUnrefined, progress, counts);
+    double length = std::sqrt(totalArea(scene) / wanted);
+    PatchMesh mesh = divide(scene, index, contacts, length, progress, counts);
+    for (int attempt = 0; attempt < 5; ++attempt) {
+        const double ratio = static_cast<double>(mesh.size()) / wanted;
+        if (std::abs(ratio - 1.0) < 0.03) break;
+        length *= std::sqrt(ratio);
+        mesh = divide(scene, index, contacts, length, progress, counts);
+    }
+    return mesh;
+}
+
+} // namespace lambert

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/progress.h"
+#include "meshing/patch_mesh.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace lambert {
+
+struct MeshOptions {
+    std::optional<double> patchLength; //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
+    std::size_t patches = 5000;        //!< about so many; 0 keeps the input's polygons as they are
+    bool splitContacts = true;         //!< divide a polygon along the edges of others that stand on it
+};
+
+struct MeshReport {
+    double patchLength = 0.0;              //!< the length used, metres; infinite where nothing was refined
+    std::size_t undividedPolygons = 0;     //!< could not be divided cleanly, kept whole (T-vertices remain)
+    std::size_t degeneratePatches = 0;     //!< dropped: no area in single precision
+    std::size_t contactPolygons = 0;       //!< divided along contact lines
+    std::size_t ignoredContactPolygons = 0; //!< their contact lines cross each other
+};
+
+/// Divides a prepared scene (see prepareScene) into patches.
+PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress,
+                         MeshReport* report = nullptr);
+
+} // namespace lambert

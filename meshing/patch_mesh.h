@@ -1,0 +1,40 @@
+#pragma once
+
+#include "meshing/patch_lookup.h"
+#include "scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lambert {
+
+/// A scene divided into patches, as flat arrays for the kernels. Patches are triangles or convex planar quads.
+///
+/// Patches [0, frontCount) are the fronts of the source polygons, contiguous per polygon and in the polygons'
+/// order. The second sides of two-sided polygons follow, in the same order, with reversed corners.
+struct PatchMesh {
+    std::vector<glm::vec3> positions;                  //!< #vertices, metres; shared wherever patches touch
+    std::vector<std::array<std::uint32_t, 4>> corners; //!< #patches, into positions, counter-clockwise; a triangle ends in kNone
+
+    std::vector<glm::vec3> centroid;     //!< #patches, metres
+    std::vector<glm::vec3> normal;       //!< #patches, unit length, to the patch's side
+    std::vector<float> area;             //!< #patches, m²
+    std::vector<Rgb> reflectance;        //!< #patches
+    std::vector<Rgb> emittedRadiosity;   //!< #patches, B_e = π L_e
+    std::vector<std::uint32_t> polygon;  //!< #patches, into Scene::polygons
+    std::vector<std::uint32_t> material; //!< #patches, into Scene::materials
+    std::size_t frontCount = 0;
+
+    PatchLookup lookup; //!< from a ray's hit to the patch
+
+    std::size_t size() const { return corners.size(); }
+    bool isQuad(std::size_t patch) const { return corners[patch][3] != kNone; }
+    bool isBack(std::size_t patch) const { return patch >= frontCount; }
+    int cornerCount(std::size_t patch) const { return isQuad(patch) ? 4 : 3; }
+    const glm::vec3& position(std::size_t patch, int k) const {
+        return positions[corners[patch][static_cast<std::size_t>(k)]];
+    }
+};
+
+} // namespace lambert

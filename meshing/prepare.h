@@ -1,0 +1,26 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <cstddef>
+
+namespace lambert {
+
+struct PrepareOptions {
+    bool joinTriangles = true; //!< coplanar triangle pairs that make a good quad become one polygon
+};
+
+struct PrepareReport {
+    std::size_t weldedVertices = 0;    //!< vertices that coincided with another
+    std::size_t collapsedPolygons = 0; //!< dropped: nothing is left of them once their vertices are welded
+    std::size_t joinedPairs = 0;       //!< triangle pairs that became quads
+};
+
+/// Lengths below this (metres) are taken for zero when vertices are compared: 1e-6 of the scene's diagonal.
+float weldTolerance(const Scene& scene);
+
+/// The scene as meshing and ray casting use it: equal vertices welded, unused ones removed, polygons that vanish dropped,
+/// triangle pairs joined. Polygons stay in the file's order.
+Scene prepareScene(const Scene& scene, const PrepareOptions& options = {}, PrepareReport* report = nullptr);
+
+} // namespace lambert

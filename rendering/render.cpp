@@ -1,0 +1,134 @@
+#include "rendering/render.h"
+
+#include "baking/interpolation.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "rendering/camera_rays.h"
+#include "rendering/tone_mapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lambert {
+
+namespace {
+
+constexpr int kTile = 4; ///< pixels along an edge; a packet has one ray per pixel
+static_assert(kTile * kTile == RayPacket::kSize);
+
+class TileRenderer {
+public:
+    TileRenderer(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster, const Camera& camera,
+                 const RenderOptions& options)
+        : mesh_(mesh),
+          baked_(baked),
+          caster_(caster),
+          eye_(camera.eye),
+          rays_(camera, options.width, options.height),
+          options_(options) {}
+
+    /// Fills the pixels of the tile whose upper left pixel is (left, top).
+    void render(int left, int top, Image& image) const {
+        Rgb sums[RayPacket::kSize];
+        std::fill(std::begin(sums), std::end(sums), Rgb(0.0F));
+        RayPacket packet;
+        const int samples = options_.samplesPerAxis * options_.samplesPerAxis;
+        for (int sample = 0; sample < samples; ++sample) {
+            aim(left, top, sample, packet);
+            caster_.closest(eye_, packet);
+            for (int lane = 0; lane < RayPacket::kSize; ++lane) sums[lane] += shown(packet, lane);
+        }
+        for (int lane = 0; lane < RayPacket::kSize; ++lane)
+            if (packet.active[lane] != 0)
+                image.at(left + lane % kTile, top + lane / kTile) = sums[lane] / static_cast<float>(samples);
+    }
+
+private:
+    /// One ray per pixel of the tile, all through the same cell of their pixel.
+    void aim(int left, int top, int sample, RayPacket& packet) const {
+        const float cell = 1.0F / static_cast<float>(options_.samplesPerAxis);
+        for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+            const int x = left + lane % kTile;
+            const int y = top + lane / kTile;
+            const auto bits = philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                      static_cast<std::uint32_t>(sample), 0},
+                                     options_.seed);
+            const float inCellX =
+                static_cast<float>(sample % options_.samplesPerAxis) + uniformFloat(bits[0]);
+            const float inCellY =
+                static_cast<float>(sample / options_.samplesPerAxis) + uniformFloat(bits[1]);
+            const glm::vec3 direction = rays_.direction(static_cast<float>(x) + cell * inCellX,
+                                                        static_cast<float>(y) + cell * inCellY);
+            packet.directionX[lane] = direction.x;
+            packet.directionY[lane] = direction.y;
+            packet.directionZ[lane] = direction.z;
+            packet.active[lane] = x < options_.width && y < options_.height ? -1 : 0;
+        }
+    }
+
+    Rgb shown(const RayPacket& packet, int lane) const {
+        const Rgb radiance = radianceOf(packet, lane);
+        return options_.toneMapExposure ? toneMap(radiance, *options_.toneMapExposure) : radiance;
+    }
+
+    Rgb radianceOf(const RayPacket& packet, int lane) const {
+        const std::uint32_t polygon = packet.polygon[lane];
+        if (polygon == kNone) return options_.background;
+        std::uint32_t patch = mesh_.lookup.patchAt(polygon, packet.u[lane], packet.v[lane]);
+        if (packet.facing[lane] >= 0.0F) patch = mesh_.lookup.backPatch(polygon, patch);
+        if (patch == kNone) return Rgb(0.0F);
+        const glm::vec3 point = polygonPoint(caster_.scene(), polygon, packet.u[lane], packet.v[lane]);
+        const InterpolationWeights weights = interpolationWeights(mesh_, patch, point);
+        const Quantity quantity = isEmitter(baked_, patch) ? Quantity::Radiosity : options_.quantity;
+        Rgb radiance(0.0F);
+        for (std::size_t k = 0; k < (baked_.isQuad(patch) ? 4U : 3U); ++k)
+            radiance +=
+                static_cast<float>(weights[k]) * shownRadiance(baked_, baked_.faces[patch][k], quantity);
+        return radiance;
+    }
+
+    const PatchMesh& mesh_;
+    const BakedMesh& baked_;
+    const RayCaster& caster_;
+    glm::vec3 eye_;
+    CameraRays rays_;
+    const RenderOptions& options_;
+};
+
+void requireInRange(const RenderOptions& options) {
+    if (options.width < 1 || options.height < 1)
+        throw UsageError(
+            fmt::format("picture size {}x{}: both must be at least 1", options.width, options.height));
+    if (options.samplesPerAxis < 1 || options.samplesPerAxis > 64)
+        throw UsageError(
+            fmt::format("{} samples per axis of a pixel: 1 to 64 are allowed", options.samplesPerAxis));
+}
+
+} // namespace
+
+Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster,
+                  const Camera& camera, const RenderOptions& options, Progress& progress) {
+    requireInRange(options);
+    Image image;
+    image.width = options.width;
+    image.height = options.height;
+    image.pixels.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
+    image.content = options.toneMapExposure ? PixelContent::Display : PixelContent::Radiance;
+
+    const TileRenderer renderer(mesh, baked, caster, camera, options);
+    const auto columns = static_cast<std::size_t>((options.width + kTile - 1) / kTile);
+    const auto rows = static_cast<std::size_t>((options.height + kTile - 1) / kTile);
+    progress.begin("picture", columns * rows);
+    parallelFor(columns * rows, 64, [&](std::size_t begin, std::size_t end, int) {
+        for (std::size_t tile = begin; tile < end; ++tile)
+            renderer.render(static_cast<int>(tile % columns) * kTile,
+                            static_cast<int>(tile / columns) * kTile, image);
+        progress.advance(end - begin);
+    });
+    progress.end();
+    return image;
+}
+
+} // namespace lambert

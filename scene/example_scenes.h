@@ -1,0 +1,20 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <array>
+#include <span>
+
+namespace lambert {
+
+/// A grey diffuse surface with emitted radiosity `emitted` (per m²).
+Material greyMaterial(std::string name, float reflectance, float emitted = 0.0F);
+
+/// A closed box [0, size] seen from inside: six quads in the order x = 0, x = size, y = 0, y = size, z = 0, z = size, each
+/// with a material of its own.
+Scene boxScene(const glm::vec3& size, const std::array<Material, 6>& materials);
+
+/// A scene with one quad per material; `quads` holds four corners for each, counter-clockwise seen from the front.
+Scene quadScene(std::span<const std::array<glm::vec3, 4>> quads, std::span<const Material> materials);
+
+} // namespace lambert

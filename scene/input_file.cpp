@@ -1,0 +1,72 @@
+#include "scene/input_file.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+namespace lambert {
+
+namespace {
+
+/// Cuts after `length` bytes, but not inside a UTF-8 sequence.
+std::string_view shortened(std::string_view text, std::size_t length) {
+    if (text.size() <= length) return text;
+    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
+    return text.substr(0, length);
+}
+
+bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+} // namespace
+
+std::string readInputFile(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        const bool missing = !error || error == std::errc::no_such_file_or_directory;
+        throw InputError(fmt::format("{}: {}", path.string(), missing ? "no such file" : error.message()));
+    }
+    if (std::filesystem::is_directory(status))
+        throw InputError(path.string() + ": found a folder, expected a file");
+    if (!std::filesystem::is_regular_file(status))
+        throw InputError(path.string() + ": found a device or pipe, expected a file");
+
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream)
+        throw InputError(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
+    std::string content(std::filesystem::file_size(path), '\0');
+    stream.read(content.data(), static_cast<std::streamsize>(content.size()));
+    if (stream.bad() || static_cast<std::size_t>(stream.gcount()) != content.size())
+        throw InputError(path.string() + ": cannot be read to its end");
+    if (content.empty()) throw InputError(path.string() + ": the file is empty");
+    return content;
+}
+
+std::string inQuotes(std::string_view text) {
+    std::string result = "\"";
+    const std::string_view start = shortened(text, 60);
+    for (const char c : start) result += isControl(c) ? (c == '\t' ? ' ' : '?') : c;
+    if (start.size() < text.size()) result += "...";
+    return result + '"';
+}
+
+std::string oneLine(std::string_view text, std::size_t maxLength) {
+    while (!text.empty() && isControl(text.back())) text.remove_suffix(1);
+    std::string result;
+    const std::string_view start = shortened(text, maxLength);
+    for (const char c : start) {
+        if (c == '\n') {
+            result += "; ";
+        } else if (c != '\r') {
+            result += isControl(c) ? '?' : c;
+        }
+    }
+    if (start.size() < text.size()) result += "...";
+    return result;
+}
+
+} // namespace lambert

@@ -1,0 +1,214 @@
+#include "scene/scene_builder.h"
+
+#include "core/error.h"
+#include "core/triangulation.h"
+#include "scene/input_file.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lambert {
+
+namespace {
+
+constexpr float kMaxReflectance = 0.99F; // above it the number of bounces grows without bound
+constexpr double kMaxOffPlane = 1e-5;    // of a quad's longest diagonal
+constexpr double kMinCornerSine = 1e-5;  // flatter corners would leave a quad's half without area
+
+bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// As the kernels see it: their square of the area must be a normal number.
+bool hasArea(const Scene& scene, const Polygon& polygon) {
+    const glm::vec3 area = areaVector(scene, polygon);
+    const float squared = glm::dot(area, area);
+    return std::isnormal(squared);
+}
+
+/// Newell's normal: twice the area vector, also of polygons that are concave or not quite planar.
+glm::dvec3 newellNormal(std::span<const glm::dvec3> points) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        sum += glm::cross(points[i] - points[0], points[(i + 1) % points.size()] - points[0]);
+    return sum;
+}
+
+/// Whether every corner turns left, seen against `normal`, by more than rounding.
+bool isConvex(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 in = points[(i + 1) % points.size()] - points[i];
+        const glm::dvec3 out = points[(i + 2) % points.size()] - points[(i + 1) % points.size()];
+        const double turn = glm::dot(glm::cross(in, out), normal);
+        if (!(turn > kMinCornerSine * glm::length(in) * glm::length(out))) return false;
+    }
+    return true;
+}
+
+/// Distance of the farthest vertex from the plane through the centroid.
+double offPlane(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
+    glm::dvec3 centroid(0.0);
+    for (const glm::dvec3& p : points) centroid += p;
+    centroid /= static_cast<double>(points.size());
+    double farthest = 0.0;
+    for (const glm::dvec3& p : points)
+        farthest = std::max(farthest, std::abs(glm::dot(p - centroid, normal)));
+    return farthest;
+}
+
+/// The polygon in its own plane, counter-clockwise.
+std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
+    const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 u = glm::normalize(glm::cross(helper, normal));
+    const glm::dvec3 v = glm::cross(normal, u);
+    std::vector<glm::dvec2> result;
+    for (const glm::dvec3& p : points)
+        result.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
+    return result;
+}
+
+} // namespace
+
+SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options)
+    : file_(std::move(file)), twoSided_(options.twoSided) {}
+
+std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
+    auto& positions = result_.scene.positions;
+    if (positions.size() >= kNone)
+        throw InputError(fmt::format("{}: found more vertices than allowed ({})", file_, kNone));
+    positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y),
+                           static_cast<float>(metres.z));
+    return static_cast<std::uint32_t>(positions.size() - 1);
+}
+
+std::uint32_t SceneBuilder::addMaterial(Material material) {
+    const Rgb reflectance = glm::clamp(material.reflectance, 0.0F, kMaxReflectance);
+    const Rgb emittedRadiance = glm::max(material.emittedRadiance, 0.0F);
+    std::string changes;
+    if (reflectance != material.reflectance)
+        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {}", material.reflectance.x,
+                              material.reflectance.y, material.reflectance.z, kMaxReflectance);
+    if (emittedRadiance != material.emittedRadiance)
+        changes +=
+            fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
+                        material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
+    if (!changes.empty()) warn(fmt::format("material {}: {}", inQuotes(material.name), changes));
+
+    material.reflectance = reflectance;
+    material.emittedRadiance = emittedRadiance;
+    material.twoSided = material.twoSided || twoSided_;
+    result_.scene.materials.push_back(std::move(material));
+    return static_cast<std::uint32_t>(result_.scene.materials.size() - 1);
+}
+
+std::uint32_t SceneBuilder::addNode(std::string name) {
+    result_.scene.nodes.push_back(std::move(name));
+    return static_cast<std::uint32_t>(result_.scene.nodes.size() - 1);
+}
+
+void SceneBuilder::addCamera(Camera camera) { result_.scene.cameras.push_back(std::move(camera)); }
+
+void SceneBuilder::warn(const std::string& text) { result_.report.warnings.push_back(file_ + ": " + text); }
+
+void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material,
+                              std::uint32_t node) {
+    ReadReport& report = result_.report;
+    const auto& positions = result_.scene.positions;
+    ++report.inputPolygons;
+    if (!std::all_of(vertices.begin(), vertices.end(),
+                     [&](std::uint32_t vertex) { return isFinite(positions[vertex]); })) {
+        ++report.nonFinitePolygons;
+        return;
+    }
+
+    const auto coincide = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
+    corners_.clear();
+    for (const std::uint32_t vertex : vertices)
+        if (corners_.empty() || !coincide(corners_.back(), vertex)) corners_.push_back(vertex);
+    while (corners_.size() > 1 && coincide(corners_.front(), corners_.back())) corners_.pop_back();
+
+    material_ = material;
+    node_ = node;
+    bool kept = false;
+    if (corners_.size() == 3) {
+        kept = addTriangle(corners_[0], corners_[1], corners_[2]);
+    } else if (corners_.size() == 4) {
+        kept = addQuad();
+    } else if (corners_.size() > 4) {
+        kept = addSplit();
+    }
+    if (!kept) ++report.degeneratePolygons;
+}
+
+bool SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return append({{a, b, c, kNone}, material_, node_});
+}
+
+bool SceneBuilder::append(const Polygon& polygon) {
+    if (!hasArea(result_.scene, polygon)) return false;
+    result_.scene.polygons.push_back(polygon);
+    return true;
+}
+
+bool SceneBuilder::addQuad() {
+    const Polygon quad{{corners_[0], corners_[1], corners_[2], corners_[3]}, material_, node_};
+    if (!hasArea(result_.scene, quad)) return false;
+
+    std::array<glm::dvec3, 4> points;
+    for (std::size_t k = 0; k < 4; ++k) points[k] = glm::dvec3(result_.scene.positions[corners_[k]]);
+    const glm::dvec3 normal = glm::normalize(newellNormal(points));
+    if (!isConvex(points, normal)) return addSplit();
+
+    const double diagonal02 = glm::distance(points[0], points[2]);
+    const double diagonal13 = glm::distance(points[1], points[3]);
+    if (offPlane(points, normal) <= kMaxOffPlane * std::max(diagonal02, diagonal13)) return append(quad);
+
+    const std::size_t first = diagonal02 <= diagonal13 ? 0 : 1;
+    const bool kept0 = addTriangle(corners_[first], corners_[first + 1], corners_[first + 2]);
+    const bool kept1 = addTriangle(corners_[first], corners_[first + 2], corners_[(first + 3) % 4]);
+    if (kept0 || kept1) ++result_.report.splitPolygons;
+    return kept0 || kept1;
+}
+
+bool SceneBuilder::addSplit() {
+    std::vector<glm::dvec3> points;
+    for (const std::uint32_t vertex : corners_) points.emplace_back(result_.scene.positions[vertex]);
+    const glm::dvec3 normal = newellNormal(points);
+    const double size = glm::length(normal);
+
+    std::optional<std::vector<std::array<std::uint32_t, 3>>> triangles;
+    if (size > 0.0) triangles = triangulatePolygon(projected(points, normal / size), points.size());
+    const bool fan = !triangles || triangles->empty();
+    if (fan) {
+        triangles.emplace();
+        for (std::uint32_t k = 1; k + 1 < corners_.size(); ++k) triangles->push_back({0, k, k + 1});
+    }
+    bool kept = false;
+    for (const auto& [a, b, c] : *triangles) kept |= addTriangle(corners_[a], corners_[b], corners_[c]);
+    if (!kept) return false;
+    ++result_.report.splitPolygons;
+    if (fan) ++fans_;
+    return true;
+}
+
+ReadResult SceneBuilder::finish() {
+    const ReadReport& report = result_.report;
+    if (result_.scene.polygons.empty()) {
+        if (report.inputPolygons == 0) throw InputError(file_ + ": found no polygons, expected at least one");
+        throw InputError(fmt::format("{}: found no usable polygon among {}: {} with a coordinate that is not "
+                                     "finite, {} without area",
+                                     file_, report.inputPolygons, report.nonFinitePolygons,
+                                     report.degeneratePolygons));
+    }
+    if (fans_ > 0)
+        warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles",
+                         fans_));
+    return std::exchange(result_, {});
+}
+
+} // namespace lambert

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+struct ReadOptions {
+    double metresPerUnit = 1.0; //!< of OBJ files, > 0; must be 1 for glTF, which is always in metres
+    bool twoSided = false;      //!< makes every material two-sided
+};
+
+/// What a reader had to leave out or change.
+struct ReadReport {
+    std::size_t inputPolygons = 0;      //!< polygons in the file, before any of the below
+    std::size_t nonFinitePolygons = 0;  //!< dropped: a coordinate is NaN or infinite
+    std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
+    std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
+    std::vector<std::string> warnings;  //!< one line each, with the file's name
+};
+
+struct ReadResult {
+    Scene scene;
+    ReadReport report;
+};
+
+/// Reads a scene by the extension of its name: .obj, .gltf or .glb. All lengths of the result are metres.
+/// Throws InputError, with file and place, if the file cannot be used; UsageError for `metresPerUnit` with glTF.
+ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The readers behind readScene.
+ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options);
+ReadResult readGltf(const std::filesystem::path& path, const ReadOptions& options);
+
+} // namespace lambert

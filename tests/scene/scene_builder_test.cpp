@@ -1,0 +1,168 @@
+#include "scene/scene_builder.h"
+
+#include "core/error.h"
+#include "reader_checks.h"
+
+#include <glm/vec2.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace lambert {
+namespace {
+
+class SceneBuilderTest : public testing::Test {
+protected:
+    void add(const std::vector<glm::dvec3>& points) {
+        std::vector<std::uint32_t> vertices;
+        for (const glm::dvec3& p : points) vertices.push_back(builder.addPosition(p));
+        builder.addPolygon(vertices, 0, 0);
+    }
+    void addTriangle() { add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}); }
+
+    SceneBuilder builder{"file", {}};
+};
+
+TEST_F(SceneBuilderTest, KeepsAPlanarConvexQuadWithItsVertexOrder) {
+    add({{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}});
+    const ReadResult result = builder.finish();
+    ASSERT_EQ(result.scene.polygons.size(), 1U);
+    EXPECT_EQ(result.scene.polygons[0].vertices, (std::array<std::uint32_t, 4>{0, 1, 2, 3}));
+    EXPECT_EQ(result.report.splitPolygons, 0U);
+}
+
+TEST_F(SceneBuilderTest, SplitsAQuadOffPlaneAlongItsShorterDiagonal) {
+    add({{0, 0, 0}, {2, 0, 0}, {3, 1, 0.01}, {0, 1, 0}}); // 1-3 is shorter than 0-2
+    const ReadResult result = builder.finish();
+    ASSERT_EQ(result.scene.polygons.size(), 2U);
+    EXPECT_EQ(result.scene.polygons[0].vertices, (std::array<std::uint32_t, 4>{1, 2, 3, kNone}));
+    EXPECT_EQ(result.scene.polygons[1].vertices, (std::array<std::uint32_t, 4>{1, 3, 0, kNone}));
+    EXPECT_EQ(result.report.splitPolygons, 1U);
+    EXPECT_EQ(result.report.inputPolygons, 1U);
+}
+
+TEST_F(SceneBuilderTest, QuadsSplitAboveOneHundredThousandthOfTheirDiagonal) {
+    // Lifting one vertex by h moves all four h/4 off the mean plane; the diagonal is sqrt(2).
+    add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.9 * 4e-5 * std::sqrt(2.0)}, {0, 1, 0}});
+    add({{0, 0, 0}, {1, 0, 0}, {1, 1, 1.1 * 4e-5 * std::sqrt(2.0)}, {0, 1, 0}});
+    EXPECT_EQ(builder.finish().report.splitPolygons, 1U);
+}
+
+TEST_F(SceneBuilderTest, SplitsAConcaveQuadWithoutChangingItsArea) {
+    add({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.polygons.size(), 2U);
+    EXPECT_NEAR(totalArea(result.scene), 4.0, 1e-6);
+    for (const Polygon& polygon : result.scene.polygons) EXPECT_GT(areaVector(result.scene, polygon).z, 0.0F);
+}
+
+TEST_F(SceneBuilderTest, SplitsAQuadWithAStraightCorner) {
+    add({{1, 0, 0}, {2, 0, 0}, {1, 2, 0}, {0, 0, 0}});
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.polygons.size(), 2U);
+    EXPECT_NEAR(totalArea(result.scene), 2.0, 1e-6);
+}
+
+TEST_F(SceneBuilderTest, SplitsAConcavePolygonInAnyPlaneWithoutChangingAreaOrFront) {
+    // A plus sign of five unit squares, in a plane that is aligned with nothing.
+    const std::vector<glm::dvec2> plus = {{1, 0}, {2, 0}, {2, 1}, {3, 1}, {3, 2}, {2, 2},
+                                          {2, 3}, {1, 3}, {1, 2}, {0, 2}, {0, 1}, {1, 1}};
+    const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
+    const glm::dvec3 v = glm::normalize(glm::cross(glm::dvec3(-3, 1, 2), u));
+    std::vector<glm::dvec3> points;
+    for (const glm::dvec2& p : plus) points.push_back(p.x * u + p.y * v);
+    add(points);
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.polygons.size(), 10U);
+    EXPECT_EQ(result.report.splitPolygons, 1U);
+    EXPECT_NEAR(totalArea(result.scene), 5.0, 1e-5); // single precision
+    for (const Polygon& polygon : result.scene.polygons)
+        EXPECT_GT(glm::dot(glm::dvec3(areaVector(result.scene, polygon)), glm::cross(u, v)), 0.0);
+}
+
+TEST_F(SceneBuilderTest, SplitsASelfCrossingPolygonIntoAFanWithAWarning) {
+    add({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 3, 0}});
+    const ReadResult result = builder.finish();
+    EXPECT_GT(result.scene.polygons.size(), 0U);
+    EXPECT_TRUE(hasWarning(result, "file: 1 polygons touch or cross themselves"));
+}
+
+TEST_F(SceneBuilderTest, AQuadWithARepeatedVertexBecomesATriangle) {
+    add({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}});
+    const ReadResult result = builder.finish();
+    ASSERT_EQ(result.scene.polygons.size(), 2U);
+    EXPECT_FALSE(result.scene.polygons[0].isQuad());
+    EXPECT_FALSE(result.scene.polygons[1].isQuad());
+    EXPECT_EQ(result.report.degeneratePolygons, 0U);
+}
+
+TEST_F(SceneBuilderTest, CountsEachKindOfDroppedPolygon) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    addTriangle();
+    add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});                       // on a line
+    add({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}});                       // two vertices
+    add({{0, 0, 0}, {1e-11, 0, 0}, {0, 1e-11, 0}});               // squared area is 0 in single precision
+    add({{0, 0, 0}, {1e15, 0, 0}, {0, 1e15, 0}});                 // squared area overflows
+    add({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}});            // there and back
+    add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}); // five on a line
+    add({{0, 0, 0}, {nan, 0, 0}, {0, 1, 0}});
+    add({{0, 0, 0}, {1e300, 0, 0}, {0, 1, 0}}); // overflows to infinity
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.polygons.size(), 1U);
+    EXPECT_EQ(result.report.inputPolygons, 9U);
+    EXPECT_EQ(result.report.degeneratePolygons, 6U);
+    EXPECT_EQ(result.report.nonFinitePolygons, 2U);
+}
+
+TEST_F(SceneBuilderTest, RefusesASceneFromWhichNothingIsLeft) {
+    EXPECT_THROW(SceneBuilder("file", {}).finish(), InputError);
+    add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+    try {
+        builder.finish();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "file: found no usable polygon among 1: 0 with a coordinate that is not finite, "
+                     "1 without area");
+    }
+}
+
+TEST_F(SceneBuilderTest, ClampsMaterialsWithOneWarningEach) {
+    builder.addMaterial({.name = "fine"});
+    builder.addMaterial(
+        {.name = "odd", .reflectance = Rgb(1.5F, -1.0F, 0.5F), .emittedRadiance = Rgb(-1, 2, 0)});
+    addTriangle();
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.materials[1].reflectance, Rgb(0.99F, 0.0F, 0.5F));
+    EXPECT_EQ(result.scene.materials[1].emittedRadiance, Rgb(0, 2, 0));
+    ASSERT_EQ(result.report.warnings.size(), 1U);
+    EXPECT_TRUE(hasWarning(result, "file: material \"odd\""));
+}
+
+TEST_F(SceneBuilderTest, TwoSidedOptionAppliesToEveryMaterial) {
+    SceneBuilder twoSided("file", {.twoSided = true});
+    twoSided.addMaterial({});
+    for (const glm::dvec3& p : {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)})
+        twoSided.addPosition(p);
+    twoSided.addPolygon(std::array<std::uint32_t, 3>{0, 1, 2}, 0, 0);
+    EXPECT_TRUE(twoSided.finish().scene.materials[0].twoSided);
+}
+
+TEST_F(SceneBuilderTest, TreatsScaledPolygonsAlike) {
+    for (const double scale : {1e-8, 1.0, 1e8}) {
+        SceneBuilder scaled("file", {});
+        for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0),
+                                    glm::dvec3(0, 1, 0), glm::dvec3(-1, 0.5, 0)})
+            scaled.addPosition(p * scale);
+        scaled.addPolygon(std::array<std::uint32_t, 4>{0, 1, 2, 3}, 0, 0);
+        scaled.addPolygon(std::array<std::uint32_t, 5>{0, 1, 2, 3, 4}, 0, 0);
+        const ReadResult result = scaled.finish();
+        EXPECT_EQ(result.scene.polygons.size(), 4U) << scale;
+        EXPECT_NEAR(totalArea(result.scene) / (scale * scale), 2.5, 1e-5) << scale; // single precision
+    }
+}
+
+} // namespace
+} // namespace lambert
