@@ -80,19 +80,18 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     std::vector<double> met(scene.materials.size(), 0.0);
     constexpr int kResolution = 16;
     RayPacket packet;
-    alignas(64) float weight[RayPacket::kSize];
     const Hemicube hemicube(mesh, rays, {kResolution, false, 0});
     for (const std::uint32_t patch : patches) {
         for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], 0.0F, kResolution)) {
             for (int row = 0; row < face.rows; row += 4) {
                 for (int column = 0; column < face.columns; column += 4) {
-                    hemicubeTile(face, column, row, kResolution, packet, weight);
+                    tileDirections(face, column, row, kResolution, packet);
                     rays.closest(hemicube.origin(patch), packet);
                     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
                         const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
                         if (!scene.materials[material].twoSided)
-                            met[material] += static_cast<double>(weight[lane] * mesh.area[patch]);
+                            met[material] += static_cast<double>(mesh.area[patch]);
                     }
                 }
             }

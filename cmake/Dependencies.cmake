@@ -12,8 +12,6 @@ find_package(OpenImageIO CONFIG REQUIRED)
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "${OpenImageIO_INCLUDE_DIR}")
 find_package(OpenMesh CONFIG REQUIRED)  # CONFIG: CGAL ships a FindOpenMesh.cmake that hides it
-if(NOT LAMBERT_STD_THREADS)
-  find_package(TBB CONFIG REQUIRED)
-endif()
+find_package(TBB CONFIG REQUIRED)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)

@@ -2,22 +2,25 @@
 
 #include "core/parallel.h"
 
-#include <algorithm>
+#include <bit>
+#include <utility>
 
 namespace lambert {
 
 void RowAccumulator::take(FormFactorRow& row) {
-    std::sort(touched_.begin(), touched_.end());
+    const auto drain = [this](std::uint32_t target) { return std::exchange(sums_[target], 0.0); };
+    row.back = drain(back());
+    row.out = drain(out());
+    std::size_t count = 0;
+    for (const std::uint64_t word : touched_) count += static_cast<std::size_t>(std::popcount(word));
     row.entries.clear();
-    row.entries.reserve(touched_.size());
-    for (const std::uint32_t patch : touched_) {
-        row.entries.push_back({patch, static_cast<float>(sums_[patch])});
-        sums_[patch] = 0.0;
+    row.entries.reserve(count);
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+        for (std::uint64_t word = std::exchange(touched_[i], 0); word != 0; word &= word - 1) {
+            const auto patch = static_cast<std::uint32_t>(64 * i + static_cast<std::size_t>(std::countr_zero(word)));
+            if (patch < back()) row.entries.push_back({patch, static_cast<float>(drain(patch))});
+        }
     }
-    row.back = back_;
-    row.out = out_;
-    touched_.clear();
-    back_ = out_ = 0.0;
 }
 
 FormFactorMatrix computeMatrix(const FormFactorMethod& method, Progress& progress) {

@@ -11,22 +11,24 @@ namespace lambert {
 /// Sums the row of one patch; one per thread, reused from row to row.
 class RowAccumulator {
 public:
-    explicit RowAccumulator(std::size_t patchCount) : sums_(patchCount, 0.0) {}
+    explicit RowAccumulator(std::size_t patchCount)
+        : back_(static_cast<std::uint32_t>(patchCount)), sums_(patchCount + 2, 0.0), touched_((patchCount + 2 + 63) / 64, 0) {}
 
-    void add(std::uint32_t patch, double value) {
-        if (sums_[patch] == 0.0) touched_.push_back(patch);
-        sums_[patch] += value;
+    /// Adds to a target: a patch, or one of the two below.
+    void add(std::uint32_t target, double value) {
+        sums_[target] += value;
+        touched_[target / 64] |= std::uint64_t{1} << (target % 64);
     }
-    void addBack(double value) { back_ += value; }
-    void addOut(double value) { out_ += value; }
+    std::uint32_t back() const { return back_; }    ///< target for what meets a black back face
+    std::uint32_t out() const { return back_ + 1; } ///< target for what leaves the scene
 
     /// Moves the sums into `row`, ascending by patch, and starts afresh.
     void take(FormFactorRow& row);
 
 private:
-    std::vector<double> sums_; ///< #patches, 0 where nothing was added
-    std::vector<std::uint32_t> touched_;
-    double back_ = 0.0, out_ = 0.0;
+    std::uint32_t back_;
+    std::vector<double> sums_;           ///< #patches + 2
+    std::vector<std::uint64_t> touched_; ///< one bit per target that something was added to
 };
 
 /// A way to compute the form factors from one patch to all others. Thread-safe.

@@ -4,6 +4,9 @@
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
 
+#include <array>
+#include <vector>
+
 namespace lambert {
 
 struct HemicubeOptions {
@@ -35,7 +38,14 @@ private:
     const PatchMesh& mesh_;
     const RayCaster& rays_;
     HemicubeOptions options_;
-    float pixelScale_; ///< ΔA / π, divided by the sum of all pixels' delta form factors
+
+    /// 4 × 4 pixels: their delta form factors, the whole hemicube's normalised to the sum 1.
+    struct Tile {
+        alignas(64) float weight[RayPacket::kSize];
+        double sum;
+    };
+    static std::vector<Tile> makeTiles(int resolution, bool top);
+    std::vector<Tile> topTiles_, sideTiles_; ///< row by row; the four sides are alike
 };
 
 /// One face of a turned hemicube: the pixel at (u, v) looks along axis + u·axisU + v·axisV.
@@ -48,9 +58,8 @@ struct HemicubeFace {
 /// Top first, then the four sides.
 std::array<HemicubeFace, 5> hemicubeFaces(const glm::vec3& normal, float angle, int resolution);
 
-/// Directions of a tile of 4 × 4 pixels, and their delta form factors before scaling: 1/(u²+v²+1)² on the top,
-/// v/(u²+v²+1)² on the sides, 0 for pixels past the face's end (which are inactive).
-void hemicubeTile(const HemicubeFace& face, int column, int row, int resolution, RayPacket& packet,
-                  float (&weight)[RayPacket::kSize]);
+/// Directions of the tile of 4 × 4 pixels that begins at (column, row), a pixel along a row after the other. Pixels past the
+/// face's end are inactive.
+void tileDirections(const HemicubeFace& face, int column, int row, int resolution, RayPacket& packet);
 
 } // namespace lambert

@@ -1,5 +1,6 @@
 #include "meshing/patch_lookup.h"
 
+#include "core/vector_clones.h"
 #include "meshing/plane_frame.h"
 
 #include <glm/common.hpp>
@@ -12,11 +13,74 @@ namespace lambert {
 
 namespace {
 
+constexpr std::uint32_t kAmbiguous = 0x80000000;
+constexpr double kCellsPerPatch = 16.0; ///< more than half of the cells then lie in one patch
+
 float cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
 
-struct CellRange {
-    std::uint32_t beginColumn, endColumn, beginRow, endRow;
+/// The smallest of the signed areas that the point spans with the edges of a patch: not negative inside.
+float insideness(const glm::vec2* c, glm::vec2 point) {
+    float smallest = std::min({cross(c[1] - c[0], point - c[0]), cross(c[2] - c[1], point - c[1]),
+                               cross(c[0] - c[3], point - c[3])});
+    if (c[3] != c[2]) smallest = std::min(smallest, cross(c[3] - c[2], point - c[2]));
+    return smallest;
+}
+
+/// Whether a patch may reach into the unit cell at `cell`, a margin for rounding included: no edge has the whole cell
+/// on its outer side.
+bool mayTouch(const glm::vec2* c, glm::vec2 cell) {
+    constexpr float kMargin = 1e-3F;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const glm::vec2 edge = c[(k + 1) % 4] - c[k];
+        // The corner of the cell farthest to the left of the edge.
+        const glm::vec2 farthest(edge.y > 0.0F ? cell.x - kMargin : cell.x + 1.0F + kMargin,
+                                 edge.x > 0.0F ? cell.y + 1.0F + kMargin : cell.y - kMargin);
+        if (cross(edge, farthest - c[k]) < 0.0F) return false;
+    }
+    return true;
+}
+
+struct PatchCell {
+    std::uint32_t cell, patch;
 };
+
+/// All pairs of a cell and a patch that may reach into it, by cell, then patch.
+std::vector<PatchCell> rasterise(std::span<const glm::vec2> corners, std::uint32_t columns, std::uint32_t rows) {
+    const auto clampTo = [](float value, std::uint32_t count) {
+        return static_cast<std::uint32_t>(std::clamp(value, 0.0F, static_cast<float>(count - 1)));
+    };
+    std::vector<PatchCell> pairs;
+    for (std::size_t first = 0; first < corners.size(); first += 4) {
+        const glm::vec2* c = corners.data() + first;
+        const glm::vec2 lower = glm::min(glm::min(c[0], c[1]), glm::min(c[2], c[3])) - 1e-3F;
+        const glm::vec2 upper = glm::max(glm::max(c[0], c[1]), glm::max(c[2], c[3])) + 1e-3F;
+        for (std::uint32_t row = clampTo(lower.y, rows); row <= clampTo(upper.y, rows); ++row)
+            for (std::uint32_t column = clampTo(lower.x, columns); column <= clampTo(upper.x, columns); ++column)
+                if (mayTouch(c, {column, row}))
+                    pairs.push_back({row * columns + column, static_cast<std::uint32_t>(first / 4)});
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const PatchCell& a, const PatchCell& b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.patch < b.patch;
+    });
+    return pairs;
+}
+
+LAMBERT_VECTOR_CLONES
+void affineGridPatches(std::uint32_t first, int columns, int rows, const float (&u)[16], const float (&v)[16],
+                       std::uint32_t (&patch)[16]) {
+    for (int lane = 0; lane < 16; ++lane) {
+        const int column = std::min(static_cast<int>(u[lane] * static_cast<float>(columns)), columns - 1);
+        const int row = std::min(static_cast<int>(v[lane] * static_cast<float>(rows)), rows - 1);
+        patch[lane] = first + static_cast<std::uint32_t>(row * columns + column);
+    }
+}
+
+LAMBERT_VECTOR_CLONES
+bool allEqual(const std::uint32_t (&values)[16]) {
+    std::uint32_t difference = 0;
+    for (int lane = 0; lane < 16; ++lane) difference |= values[lane] ^ values[0];
+    return difference == 0;
+}
 
 } // namespace
 
@@ -37,103 +101,94 @@ void PatchLookup::addPatches(const Scene& scene, const Polygon& polygon, std::ui
     entries_.push_back(entry);
 
     const PlaneFrame frame = planeFrame(scene, polygon);
-    Locator locator{};
-    locator.quad = polygon.isQuad();
-    glm::vec2 lower(std::numeric_limits<float>::max());
-    glm::vec2 upper(std::numeric_limits<float>::lowest());
+    std::array<glm::dvec2, 4> p{};
+    glm::dvec2 lower(std::numeric_limits<double>::max());
+    glm::dvec2 upper(std::numeric_limits<double>::lowest());
     for (int k = 0; k < polygon.size(); ++k) {
-        const glm::vec2 p(frame.project(corner(scene, polygon, k)));
-        locator.corners[static_cast<std::size_t>(k)] = p;
-        lower = glm::min(lower, p);
-        upper = glm::max(upper, p);
+        p[static_cast<std::size_t>(k)] = frame.project(corner(scene, polygon, k));
+        lower = glm::min(lower, p[static_cast<std::size_t>(k)]);
+        upper = glm::max(upper, p[static_cast<std::size_t>(k)]);
     }
-    // About one cell per patch, as square as the polygon allows.
-    const glm::vec2 size = glm::max(upper - lower, glm::vec2(1e-20F));
-    const double cellSize =
-        std::sqrt(static_cast<double>(size.x) * static_cast<double>(size.y) / static_cast<double>(corners.size()));
-    const auto cellCount = [&](float extent) {
-        const double count = std::ceil(static_cast<double>(extent) / cellSize);
-        return static_cast<std::uint32_t>(std::clamp(count, 1.0, 4.0 * static_cast<double>(corners.size())));
+    const glm::dvec2 size = glm::max(upper - lower, glm::dvec2(1e-30));
+    const double cells = kCellsPerPatch * static_cast<double>(corners.size());
+    const double cellSize = std::sqrt(size.x * size.y / cells);
+    const auto cellCount = [&](double extent) {
+        return static_cast<std::uint32_t>(std::clamp(std::ceil(extent / cellSize), 1.0, cells));
     };
-    locator.lower = lower;
+    Locator locator{};
     locator.columns = cellCount(size.x);
     locator.rows = cellCount(size.y);
-    locator.cellsPerMetre = glm::vec2(locator.columns, locator.rows) / size;
+    const glm::dvec2 cellsPerMetre = glm::dvec2(locator.columns, locator.rows) / size;
+    const auto toGrid = [&](glm::dvec2 point) { return glm::vec2((point - lower) * cellsPerMetre); };
+    for (glm::dvec2& point : p) point = (point - lower) * cellsPerMetre;
+    const glm::dvec2 alongV = polygon.isQuad() ? p[3] - p[0] : p[2] - p[0];
+    locator.origin = {glm::vec2(p[0]), glm::vec2(p[1] + p[3] - p[2])};
+    locator.axisU = {glm::vec2(p[1] - p[0]), glm::vec2(p[2] - p[3])};
+    locator.axisV = {glm::vec2(alongV), glm::vec2(p[2] - p[1])};
+    if (!polygon.isQuad()) { // rounding may put u + v above 1
+        locator.origin[1] = locator.origin[0];
+        locator.axisU[1] = locator.axisU[0];
+        locator.axisV[1] = locator.axisV[0];
+    }
     locator.firstCell = static_cast<std::uint32_t>(cells_.size());
-    locator.firstCorner = static_cast<std::uint32_t>(planeCorners_.size());
+    locator.firstCorner = static_cast<std::uint32_t>(gridCorners_.size());
+    for (const auto& patch : corners)
+        for (std::size_t k = 0; k < 4; ++k)
+            gridCorners_.push_back(toGrid(frame.project(positions[patch[k] == kNone ? patch[2] : patch[k]])));
 
-    const auto clampCell = [](float value, std::uint32_t count) {
-        return static_cast<std::uint32_t>(std::clamp(value, 0.0F, static_cast<float>(count - 1)));
-    };
-    std::vector<CellRange> ranges;
-    std::vector<std::uint32_t> counts(std::size_t{locator.columns} * locator.rows + 1, 0);
-    for (const auto& patch : corners) {
-        glm::vec2 patchLower(std::numeric_limits<float>::max());
-        glm::vec2 patchUpper(std::numeric_limits<float>::lowest());
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::uint32_t vertex = patch[k] == kNone ? patch[2] : patch[k];
-            const glm::vec2 p(frame.project(positions[vertex]));
-            planeCorners_.push_back(p);
-            patchLower = glm::min(patchLower, p);
-            patchUpper = glm::max(patchUpper, p);
+    const std::vector<PatchCell> pairs =
+        rasterise(std::span(gridCorners_).subspan(locator.firstCorner), locator.columns, locator.rows);
+    auto pair = pairs.begin();
+    for (std::uint32_t cell = 0; cell < locator.columns * locator.rows; ++cell) {
+        auto end = pair;
+        while (end != pairs.end() && end->cell == cell) ++end;
+        if (end - pair == 1) {
+            cells_.push_back(pair->patch);
+        } else {
+            // Also for a cell outside the polygon, which a rounded point may fall into: it has no candidates.
+            cells_.push_back(kAmbiguous + static_cast<std::uint32_t>(candidates_.size()));
+            candidates_.push_back(static_cast<std::uint32_t>(end - pair));
+            for (auto it = pair; it != end; ++it) candidates_.push_back(it->patch);
         }
-        const glm::vec2 from = (patchLower - lower) * locator.cellsPerMetre - 1e-3F;
-        const glm::vec2 to = (patchUpper - lower) * locator.cellsPerMetre + 1e-3F;
-        ranges.push_back({clampCell(from.x, locator.columns), clampCell(to.x, locator.columns) + 1,
-                          clampCell(from.y, locator.rows), clampCell(to.y, locator.rows) + 1});
-        for (std::uint32_t row = ranges.back().beginRow; row < ranges.back().endRow; ++row)
-            for (std::uint32_t column = ranges.back().beginColumn; column < ranges.back().endColumn; ++column)
-                ++counts[std::size_t{row} * locator.columns + column];
+        pair = end;
     }
-    auto next = static_cast<std::uint32_t>(candidates_.size());
-    for (std::uint32_t& count : counts) {
-        cells_.push_back(next);
-        next += count;
-        count = cells_.back(); // from here on: where the cell's next candidate goes
-    }
-    candidates_.resize(next);
-    for (std::uint32_t patch = 0; patch < ranges.size(); ++patch)
-        for (std::uint32_t row = ranges[patch].beginRow; row < ranges[patch].endRow; ++row)
-            for (std::uint32_t column = ranges[patch].beginColumn; column < ranges[patch].endColumn; ++column)
-                candidates_[counts[std::size_t{row} * locator.columns + column]++] = patch;
     locators_.push_back(locator);
 }
 
-/// The smallest of the signed areas that the point spans with the patch's edges: not negative inside.
-float PatchLookup::insideness(const Locator& locator, std::uint32_t patch, glm::vec2 point) const {
-    const glm::vec2* c = planeCorners_.data() + locator.firstCorner + 4 * std::size_t{patch};
-    float smallest = std::min({cross(c[1] - c[0], point - c[0]), cross(c[2] - c[1], point - c[1]),
-                               cross(c[0] - c[3], point - c[3])});
-    if (c[3] != c[2]) smallest = std::min(smallest, cross(c[3] - c[2], point - c[2]));
-    return smallest;
+std::uint32_t PatchLookup::search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const {
+    std::uint32_t best = 0;
+    float bestInsideness = std::numeric_limits<float>::lowest();
+    const std::uint32_t* candidate = candidates_.data() + firstCandidate;
+    for (std::uint32_t remaining = *candidate; remaining > 0; --remaining) {
+        const std::uint32_t patch = *++candidate;
+        const float inside = insideness(gridCorners_.data() + locator.firstCorner + 4 * std::size_t{patch}, point);
+        if (inside >= 0.0F) return patch;
+        if (inside > bestInsideness) {
+            bestInsideness = inside;
+            best = patch;
+        }
+    }
+    return best;
 }
 
 std::uint32_t PatchLookup::locate(const Entry& entry, float u, float v) const {
     const Locator& locator = locators_[entry.locator];
-    const auto& c = locator.corners;
-    glm::vec2 point;
-    if (!locator.quad)
-        point = c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]);
-    else if (u + v <= 1.0F)
-        point = c[0] + u * (c[1] - c[0]) + v * (c[3] - c[0]);
-    else
-        point = c[2] + (1.0F - u) * (c[3] - c[2]) + (1.0F - v) * (c[1] - c[2]);
+    const glm::vec2 point = gridPoint(locator, u, v);
+    const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
+    const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
+    const std::uint32_t cell = cells_[locator.firstCell + std::size_t{row} * locator.columns + column];
+    return entry.first + (cell < kAmbiguous ? cell : search(locator, cell - kAmbiguous, point));
+}
 
-    const glm::vec2 cell = (point - locator.lower) * locator.cellsPerMetre;
-    const auto column = std::min(static_cast<std::uint32_t>(std::max(cell.x, 0.0F)), locator.columns - 1);
-    const auto row = std::min(static_cast<std::uint32_t>(std::max(cell.y, 0.0F)), locator.rows - 1);
-    const std::size_t index = locator.firstCell + std::size_t{row} * locator.columns + column;
-    std::uint32_t best = 0;
-    float bestInsideness = std::numeric_limits<float>::lowest();
-    for (std::uint32_t i = cells_[index]; i < cells_[index + 1]; ++i) {
-        const float inside = insideness(locator, candidates_[i], point);
-        if (inside > bestInsideness) {
-            bestInsideness = inside;
-            best = candidates_[i];
-            if (inside >= 0.0F) break;
-        }
+void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
+                            std::uint32_t (&patch)[16]) const {
+    if (polygon[0] != kNone && allEqual(polygon) && entries_[polygon[0]].locator == kNone) {
+        const Entry& entry = entries_[polygon[0]];
+        affineGridPatches(entry.first, entry.columns, entry.rows, u, v, patch);
+        return;
     }
-    return entry.first + best;
+    for (int lane = 0; lane < 16; ++lane)
+        if (polygon[lane] != kNone) patch[lane] = patchAt(polygon[lane], u[lane], v[lane]);
 }
 
 } // namespace lambert

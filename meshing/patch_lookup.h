@@ -25,6 +25,10 @@ public:
                (column < entry.columns ? column : entry.columns - 1U);
     }
 
+    /// The same for 16 hits at once, which is faster. `patch` is left as it is where `polygon` is kNone.
+    void patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
+                   std::uint32_t (&patch)[16]) const;
+
     /// The patch on the other side of a front patch of `polygon`, or kNone if the polygon is one-sided.
     std::uint32_t backPatch(std::uint32_t polygon, std::uint32_t frontPatch) const {
         const Entry& entry = entries_[polygon];
@@ -51,24 +55,27 @@ private:
         std::uint16_t columns = 1, rows = 1;
     };
 
-    /// Uniform grid over the polygon in a plane frame; each cell lists the patches that touch it.
+    /// Fine uniform grid over the polygon in a plane frame. A cell that lies in one patch holds it; another holds where
+    /// its candidates begin.
     struct Locator {
-        std::array<glm::vec2, 4> corners; ///< of the polygon, in the plane frame
-        bool quad;
-        glm::vec2 lower, cellsPerMetre;
+        std::array<glm::vec2, 2> origin, axisU, axisV; ///< chart → grid, for u + v <= 1 and for the rest of a quad
         std::uint32_t columns, rows;
         std::uint32_t firstCell;   ///< into cells_
-        std::uint32_t firstCorner; ///< into planeCorners_, 4 per patch
+        std::uint32_t firstCorner; ///< into gridCorners_, 4 per patch
     };
 
+    glm::vec2 gridPoint(const Locator& locator, float u, float v) const {
+        const std::size_t half = u + v <= 1.0F ? 0 : 1;
+        return locator.origin[half] + u * locator.axisU[half] + v * locator.axisV[half];
+    }
+    std::uint32_t search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const;
     std::uint32_t locate(const Entry& entry, float u, float v) const;
-    float insideness(const Locator& locator, std::uint32_t patch, glm::vec2 point) const;
 
     std::vector<Entry> entries_;
     std::vector<Locator> locators_;
-    std::vector<std::uint32_t> cells_;      ///< where each cell's candidates begin; the next cell's entry ends them
-    std::vector<std::uint32_t> candidates_; ///< patches, relative to the polygon's first
-    std::vector<glm::vec2> planeCorners_;   ///< 4 per patch; a triangle repeats its last corner
+    std::vector<std::uint32_t> cells_;      ///< a patch relative to the polygon's first, or kAmbiguous + candidates
+    std::vector<std::uint32_t> candidates_; ///< per ambiguous cell: how many, then the patches
+    std::vector<glm::vec2> gridCorners_;    ///< 4 per patch, in cells; a triangle repeats its last corner
 };
 
 } // namespace lambert

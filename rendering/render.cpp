@@ -8,6 +8,7 @@
 #include "rendering/tone_mapping.h"
 
 #include <fmt/format.h>
+#include <glm/vec2.hpp>
 
 #include <algorithm>
 
@@ -46,21 +47,26 @@ public:
     }
 
 private:
+    /// Stratified in n × n cells, and in n² strips along each axis as well (multi-jittered sampling, K. Chiu,
+    /// P. Shirley, C. Wang, Graphics Gems IV, 1994): an upright or level edge is resolved to 1/n² of a pixel.
+    glm::vec2 placeInPixel(int sample, const glm::vec2& jitter) const {
+        const auto n = static_cast<float>(options_.samplesPerAxis);
+        const auto column = static_cast<float>(sample % options_.samplesPerAxis);
+        const auto row = static_cast<float>(sample / options_.samplesPerAxis);
+        return {(column + (row + jitter.x) / n) / n, (row + (column + jitter.y) / n) / n};
+    }
+
     /// One ray per pixel of the tile, all through the same cell of their pixel.
     void aim(int left, int top, int sample, RayPacket& packet) const {
-        const float cell = 1.0F / static_cast<float>(options_.samplesPerAxis);
         for (int lane = 0; lane < RayPacket::kSize; ++lane) {
             const int x = left + lane % kTile;
             const int y = top + lane / kTile;
             const auto bits = philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                       static_cast<std::uint32_t>(sample), 0},
                                      options_.seed);
-            const float inCellX =
-                static_cast<float>(sample % options_.samplesPerAxis) + uniformFloat(bits[0]);
-            const float inCellY =
-                static_cast<float>(sample / options_.samplesPerAxis) + uniformFloat(bits[1]);
-            const glm::vec3 direction = rays_.direction(static_cast<float>(x) + cell * inCellX,
-                                                        static_cast<float>(y) + cell * inCellY);
+            const glm::vec2 place = placeInPixel(sample, {uniformFloat(bits[0]), uniformFloat(bits[1])});
+            const glm::vec3 direction =
+                rays_.direction(static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
             packet.directionX[lane] = direction.x;
             packet.directionY[lane] = direction.y;
             packet.directionZ[lane] = direction.z;

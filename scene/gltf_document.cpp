@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <limits>
@@ -19,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepestNesting = 64; // tinygltf descends by recursion
+constexpr int kDeepestNesting = 64; // tinygltf descends into `extras` and extensions by recursion
 constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 struct Container {
@@ -65,21 +66,38 @@ Container unpack(const std::string& file, std::string_view bytes) {
     return container;
 }
 
+/// Before parsing: afterwards a hostile file would only wait for the first recursive function.
+void refuseDeepNesting(const std::string& file, std::string_view text) {
+    int depth = 0;
+    bool inString = false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if (inString) {
+            if (c == '\\') ++k;
+            if (c == '"') inString = false;
+        } else if (c == '"') {
+            inString = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kDeepestNesting)
+                throw InputError(
+                    fmt::format("{}: found JSON nested deeper than {} levels", file, kDeepestNesting));
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
 json parseJson(const std::string& file, std::string_view text) {
-    const auto visit = [&](int depth, json::parse_event_t event, json& parsed) {
-        if (depth > kDeepestNesting)
-            throw InputError(
-                fmt::format("{}: found JSON nested deeper than {} levels", file, kDeepestNesting));
-        return !(event == json::parse_event_t::key && parsed == "extras");
-    };
+    refuseDeepNesting(file, text);
     try {
-        json document = json::parse(text.begin(), text.end(), visit);
+        json document = json::parse(text.begin(), text.end());
         if (!document.is_object()) throw InputError(file + ": found JSON that is not an object");
-        for (const char* unused : {"animations", "extensions", "images", "samplers", "skins", "textures"})
+        for (const char* unused :
+             {"animations", "extensions", "extras", "images", "samplers", "skins", "textures"})
             document.erase(unused);
         return document;
     } catch (const json::exception& error) {
-        // What stands before the second "]" is the library's own name for the error.
+        // What stands before "] " is the library's own name for the error.
         std::string_view message = error.what();
         message.remove_prefix(std::min(message.find("] ") + 2, message.size()));
         throw InputError(fmt::format("{}: not JSON: {}", file, oneLine(message)));

@@ -155,7 +155,7 @@ const char* nameOf(Kind kind) {
 }
 
 std::string shortForm(const json& value) {
-    if (value.is_array()) return fmt::format("an array of {}", value.size());
+    if (value.is_array() && value.size() > 16) return fmt::format("an array of {}", value.size());
     if (value.is_object()) return "an object";
     return oneLine(value.dump(), 60);
 }

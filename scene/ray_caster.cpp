@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 namespace lambert {
 
@@ -21,7 +23,7 @@ enum GeometryId : unsigned { kTriangles = 0, kQuads = 1 };
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene, const std::vector<std::uint32_t>& ids,
+void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene, std::span<const std::uint32_t> ids,
                     GeometryId geometryId) {
     if (ids.empty()) return;
     const bool quads = geometryId == kQuads;
@@ -64,13 +66,18 @@ void load(const glm::vec3& origin, const RayPacket& packet, RTCRayHit16& rays) {
     }
 }
 
+/// `polygonOf` holds the polygons of all triangles, then, from `firstQuad`, of all quads.
 LAMBERT_VECTOR_CLONES
-void storeFacing(const RTCRayHit16& rays, RayPacket& packet) {
+void store(const RTCRayHit16& rays, const std::uint32_t* polygonOf, std::uint32_t firstQuad, RayPacket& packet) {
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         packet.facing[lane] = rays.ray.dir_x[lane] * rays.hit.Ng_x[lane] + rays.ray.dir_y[lane] * rays.hit.Ng_y[lane] +
                               rays.ray.dir_z[lane] * rays.hit.Ng_z[lane];
         packet.u[lane] = rays.hit.u[lane];
         packet.v[lane] = rays.hit.v[lane];
+        const bool hit = rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+        const std::uint32_t primitive = rays.hit.primID[lane] + (rays.hit.geomID[lane] == kQuads ? firstQuad : 0);
+        const std::uint32_t polygon = polygonOf[hit ? primitive : 0];
+        packet.polygon[lane] = hit ? polygon : kNone;
     }
 }
 
@@ -96,7 +103,8 @@ struct RayCaster::Impl {
     float largestCoordinate = 0.0F;
     RTCDevice device = nullptr;
     RTCScene embree = nullptr;
-    std::array<std::vector<std::uint32_t>, 2> polygons; ///< by GeometryId, primitive → polygon
+    std::vector<std::uint32_t> polygonOf; ///< of each triangle, then of each quad that Embree has
+    std::uint32_t firstQuad = 0;
 
     ~Impl() {
         if (embree != nullptr) rtcReleaseScene(embree);
@@ -120,19 +128,24 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl_->bounds = boundsOf(scene);
     const glm::vec3 largest = glm::max(glm::abs(impl_->bounds.lower), glm::abs(impl_->bounds.upper));
     impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
-    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i)
-        impl_->polygons[scene.polygons[i].isQuad() ? kQuads : kTriangles].push_back(i);
+    for (const bool quads : {false, true}) {
+        if (quads) impl_->firstQuad = static_cast<std::uint32_t>(impl_->polygonOf.size());
+        for (std::uint32_t i = 0; i < scene.polygons.size(); ++i)
+            if (scene.polygons[i].isQuad() == quads) impl_->polygonOf.push_back(i);
+    }
 
-    // One building thread: a parallel build may order the leaves, and so decide ties on shared edges, differently
-    // from run to run.
-    impl_->device = rtcNewDevice("threads=1");
+    impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr)
         throw SystemError(fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     impl_->embree = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->embree, RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
-    attachPolygons(impl_->device, impl_->embree, scene, impl_->polygons[kTriangles], kTriangles);
-    attachPolygons(impl_->device, impl_->embree, scene, impl_->polygons[kQuads], kQuads);
-    rtcCommitScene(impl_->embree);
+    const std::span<const std::uint32_t> polygons(impl_->polygonOf);
+    attachPolygons(impl_->device, impl_->embree, scene, polygons.first(impl_->firstQuad), kTriangles);
+    attachPolygons(impl_->device, impl_->embree, scene, polygons.subspan(impl_->firstQuad), kQuads);
+    if (impl_->polygonOf.empty()) impl_->polygonOf.push_back(kNone); // read, not used, where a ray hits nothing
+    // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
+    // (The device's own "threads" setting would limit oneTBB for the whole program.)
+    tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->embree); });
     if (const RTCError error = rtcGetDeviceError(impl_->device); error != RTC_ERROR_NONE)
         throw SystemError(fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
 }
@@ -149,7 +162,8 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    return Hit{impl_->polygons[query.hit.geomID][query.hit.primID], query.hit.u, query.hit.v, query.ray.tfar,
+    const std::uint32_t primitive = query.hit.primID + (query.hit.geomID == kQuads ? impl_->firstQuad : 0);
+    return Hit{impl_->polygonOf[primitive], query.hit.u, query.hit.v, query.ray.tfar,
                glm::dot(ray.direction, normal) < 0.0F};
 }
 
@@ -161,12 +175,7 @@ void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     alignas(64) RTCRayHit16 rays;
     load(origin, packet, rays);
     rtcIntersect16(packet.active, impl_->embree, &context, &rays);
-    storeFacing(rays, packet);
-    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
-        const unsigned geometry = rays.hit.geomID[lane];
-        const bool hit = geometry != RTC_INVALID_GEOMETRY_ID && packet.active[lane] != 0;
-        packet.polygon[lane] = hit ? impl_->polygons[geometry][rays.hit.primID[lane]] : kNone;
-    }
+    store(rays, impl_->polygonOf.data(), impl_->firstQuad, packet);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {

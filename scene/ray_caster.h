@@ -27,7 +27,7 @@ struct alignas(64) RayPacket {
     float directionX[kSize], directionY[kSize], directionZ[kSize];
     int active[kSize]; //!< -1 for a ray to be traced, 0 for none
 
-    std::uint32_t polygon[kSize]; //!< out: kNone where nothing was hit
+    std::uint32_t polygon[kSize]; //!< out: kNone where nothing was hit, and for inactive rays
     float u[kSize], v[kSize];     //!< out: chart of the polygon
     float facing[kSize];          //!< out: direction · geometric normal; negative on the front
 };

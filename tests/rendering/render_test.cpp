@@ -142,8 +142,8 @@ TEST_F(Wall, StandsBeforeTheBackground) {
     const Image image = picture(scene_, mesh, baked, camera, options);
     EXPECT_EQ(image.at(0, 0), options.background);
     EXPECT_NEAR(image.at(32, 32).x, 1.0F, kRounding);
-    // The wall fills a quarter of the picture's width and of its height. An edge is resolved to 1/16 of a
-    // pixel.
+    // The wall fills a quarter of the picture's width and of its height. Each of its four edges is
+    // resolved to 1/16 of a pixel.
     float covered = 0.0F;
     for (const Rgb& pixel : image.pixels) covered += pixel.x;
     EXPECT_NEAR(covered, 16.0F * 16.0F, 4.0F * 16.0F / 16.0F);
