@@ -22,15 +22,6 @@ namespace {
 constexpr double kMostPatches = 2e8;
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
-/// Whether the polygon's chart is affine: a triangle or a parallelogram.
-bool hasAffineChart(const Scene& scene, const Polygon& polygon) {
-    if (!polygon.isQuad()) return true;
-    const glm::vec3 a = corner(scene, polygon, 0);
-    const glm::vec3 c = corner(scene, polygon, 2);
-    const glm::vec3 skew = (a - corner(scene, polygon, 1)) + (c - corner(scene, polygon, 3));
-    return glm::length(skew) <= 1e-5F * glm::distance(a, c);
-}
-
 /// Collects the patches of one polygon after the other.
 class PatchMeshBuilder {
 public:
@@ -45,10 +36,9 @@ public:
     void addGrid(std::uint32_t polygon, const std::vector<Corners>& faces, std::size_t columns, std::size_t rows) {
         const std::size_t first = mesh_.size();
         append(polygon, faces);
-        const bool complete = mesh_.size() - first == faces.size();
-        if (complete && (faces.size() == 1 || hasAffineChart(scene_, scene_.polygons[polygon])))
-            mesh_.lookup.addGrid(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(columns),
-                                 static_cast<std::uint32_t>(rows));
+        if (mesh_.size() - first == faces.size())
+            mesh_.lookup.addGrid(scene_, scene_.polygons[polygon], static_cast<std::uint32_t>(first),
+                                 static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
         else
             addLocated(polygon, first);
     }

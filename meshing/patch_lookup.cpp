@@ -13,7 +13,6 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kAmbiguous = 0x80000000;
 constexpr double kCellsPerPatch = 16.0; ///< more than half of the cells then lie in one patch
 
 float cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
@@ -66,16 +65,6 @@ std::vector<PatchCell> rasterise(std::span<const glm::vec2> corners, std::uint32
 }
 
 LAMBERT_VECTOR_CLONES
-void affineGridPatches(std::uint32_t first, int columns, int rows, const float (&u)[16], const float (&v)[16],
-                       std::uint32_t (&patch)[16]) {
-    for (int lane = 0; lane < 16; ++lane) {
-        const int column = std::min(static_cast<int>(u[lane] * static_cast<float>(columns)), columns - 1);
-        const int row = std::min(static_cast<int>(v[lane] * static_cast<float>(rows)), rows - 1);
-        patch[lane] = first + static_cast<std::uint32_t>(row * columns + column);
-    }
-}
-
-LAMBERT_VECTOR_CLONES
 bool allEqual(const std::uint32_t (&values)[16]) {
     std::uint32_t difference = 0;
     for (int lane = 0; lane < 16; ++lane) difference |= values[lane] ^ values[0];
@@ -84,11 +73,38 @@ bool allEqual(const std::uint32_t (&values)[16]) {
 
 } // namespace
 
-void PatchLookup::addGrid(std::uint32_t first, std::uint32_t columns, std::uint32_t rows) {
+LAMBERT_VECTOR_CLONES
+void PatchLookup::gridPatches(const Entry& entry, const float (&u)[16], const float (&v)[16],
+                              std::uint32_t (&patch)[16]) {
+    const Entry grid = entry;
+    if (grid.skew == glm::vec2(0.0F)) {
+        for (int lane = 0; lane < 16; ++lane)
+            patch[lane] = grid.first + gridIndex(v[lane], grid.rows) * grid.columns + gridIndex(u[lane], grid.columns);
+        return;
+    }
+    for (int lane = 0; lane < 16; ++lane) {
+        const GridPoint p = gridPoint(u[lane], v[lane], grid.skew);
+        patch[lane] = grid.first + gridIndex(p.t, grid.rows) * grid.columns + gridIndex(p.s, grid.columns);
+    }
+}
+
+void PatchLookup::addGrid(const Scene& scene, const Polygon& polygon, std::uint32_t first, std::uint32_t columns,
+                          std::uint32_t rows) {
     Entry entry;
     entry.first = first;
     entry.columns = static_cast<std::uint16_t>(columns);
     entry.rows = static_cast<std::uint16_t>(rows);
+    if (polygon.isQuad() && columns * rows > 1) {
+        const PlaneFrame frame = planeFrame(scene, polygon);
+        const glm::dvec2 origin = frame.project(corner(scene, polygon, 0));
+        const glm::dvec2 a = frame.project(corner(scene, polygon, 1)) - origin;
+        const glm::dvec2 b = frame.project(corner(scene, polygon, 3)) - origin;
+        const glm::dvec2 beyond = frame.project(corner(scene, polygon, 2)) - origin - a - b;
+        const glm::vec2 skew(glm::dvec2(beyond.x * b.y - beyond.y * b.x, a.x * beyond.y - a.y * beyond.x) /
+                             (a.x * b.y - a.y * b.x));
+        // Rounding alone must not cost a parallelogram its short way.
+        if (std::max(std::abs(skew.x), std::abs(skew.y)) > 1e-5F) entry.skew = skew;
+    }
     entries_.push_back(entry);
 }
 
@@ -138,21 +154,40 @@ void PatchLookup::addPatches(const Scene& scene, const Polygon& polygon, std::ui
 
     const std::vector<PatchCell> pairs =
         rasterise(std::span(gridCorners_).subspan(locator.firstCorner), locator.columns, locator.rows);
+    std::vector<std::uint32_t> patches;
     auto pair = pairs.begin();
     for (std::uint32_t cell = 0; cell < locator.columns * locator.rows; ++cell) {
         auto end = pair;
-        while (end != pairs.end() && end->cell == cell) ++end;
-        if (end - pair == 1) {
-            cells_.push_back(pair->patch);
-        } else {
-            // Also for a cell outside the polygon, which a rounded point may fall into: it has no candidates.
-            cells_.push_back(kAmbiguous + static_cast<std::uint32_t>(candidates_.size()));
-            candidates_.push_back(static_cast<std::uint32_t>(end - pair));
-            for (auto it = pair; it != end; ++it) candidates_.push_back(it->patch);
-        }
+        patches.clear();
+        for (; end != pairs.end() && end->cell == cell; ++end) patches.push_back(end->patch);
+        cells_.push_back(codeFor(locator, patches));
         pair = end;
     }
     locators_.push_back(locator);
+}
+
+/// The code of a cell into which the given patches may reach.
+std::uint32_t PatchLookup::codeFor(const Locator& locator, std::span<const std::uint32_t> patches) {
+    if (patches.size() == 1) return patches[0];
+    if (patches.size() == 2) {
+        const glm::vec2* one = gridCorners_.data() + locator.firstCorner + 4 * std::size_t{patches[0]};
+        const glm::vec2* two = gridCorners_.data() + locator.firstCorner + 4 * std::size_t{patches[1]};
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                const glm::vec2 a = one[i];
+                const glm::vec2 b = one[(i + 1) % 4];
+                if (a == b || a != two[(k + 1) % 4] || b != two[k]) continue;
+                const glm::vec2 normal(a.y - b.y, b.x - a.x); // to the left, where `one` lies
+                splits_.push_back({normal, normal.x * a.x + normal.y * a.y, patches[0], patches[1]});
+                return kSplit + static_cast<std::uint32_t>(splits_.size() - 1);
+            }
+        }
+    }
+    // Also for a cell outside the polygon, which a rounded point may fall into: it has no candidates.
+    const auto code = kSearch + static_cast<std::uint32_t>(candidates_.size());
+    candidates_.push_back(static_cast<std::uint32_t>(patches.size()));
+    candidates_.insert(candidates_.end(), patches.begin(), patches.end());
+    return code;
 }
 
 std::uint32_t PatchLookup::search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const {
@@ -173,18 +208,51 @@ std::uint32_t PatchLookup::search(const Locator& locator, std::uint32_t firstCan
 
 std::uint32_t PatchLookup::locate(const Entry& entry, float u, float v) const {
     const Locator& locator = locators_[entry.locator];
-    const glm::vec2 point = gridPoint(locator, u, v);
+    const glm::vec2 point = cellPoint(locator, u, v);
     const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
     const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
-    const std::uint32_t cell = cells_[locator.firstCell + std::size_t{row} * locator.columns + column];
-    return entry.first + (cell < kAmbiguous ? cell : search(locator, cell - kAmbiguous, point));
+    const std::uint32_t code = cells_[locator.firstCell + std::size_t{row} * locator.columns + column];
+    return entry.first + decode(locator, code, point);
+}
+
+LAMBERT_VECTOR_CLONES
+void PatchLookup::cells16(const Locator& locator, const float (&u)[16], const float (&v)[16], float (&x)[16],
+                          float (&y)[16], std::uint32_t (&cell)[16]) {
+    const Locator l = locator;
+    const int lastColumn = static_cast<int>(l.columns) - 1;
+    const int lastRow = static_cast<int>(l.rows) - 1;
+    for (int lane = 0; lane < 16; ++lane) {
+        const bool near = u[lane] + v[lane] <= 1.0F;
+        const float nearX = l.origin[0].x + u[lane] * l.axisU[0].x + v[lane] * l.axisV[0].x;
+        const float nearY = l.origin[0].y + u[lane] * l.axisU[0].y + v[lane] * l.axisV[0].y;
+        const float farX = l.origin[1].x + u[lane] * l.axisU[1].x + v[lane] * l.axisV[1].x;
+        const float farY = l.origin[1].y + u[lane] * l.axisU[1].y + v[lane] * l.axisV[1].y;
+        x[lane] = near ? nearX : farX;
+        y[lane] = near ? nearY : farY;
+        const int column = std::clamp(static_cast<int>(x[lane]), 0, lastColumn);
+        const int row = std::clamp(static_cast<int>(y[lane]), 0, lastRow);
+        cell[lane] = l.firstCell + static_cast<std::uint32_t>(row * static_cast<int>(l.columns) + column);
+    }
+}
+
+void PatchLookup::locate16(const Entry& entry, const float (&u)[16], const float (&v)[16],
+                           std::uint32_t (&patch)[16]) const {
+    alignas(64) float x[16], y[16];
+    alignas(64) std::uint32_t cell[16];
+    const Locator& locator = locators_[entry.locator];
+    cells16(locator, u, v, x, y, cell);
+    for (int lane = 0; lane < 16; ++lane)
+        patch[lane] = entry.first + decode(locator, cells_[cell[lane]], {x[lane], y[lane]});
 }
 
 void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
                             std::uint32_t (&patch)[16]) const {
-    if (polygon[0] != kNone && allEqual(polygon) && entries_[polygon[0]].locator == kNone) {
+    if (polygon[0] != kNone && allEqual(polygon)) {
         const Entry& entry = entries_[polygon[0]];
-        affineGridPatches(entry.first, entry.columns, entry.rows, u, v, patch);
+        if (entry.locator != kNone)
+            locate16(entry, u, v, patch);
+        else
+            gridPatches(entry, u, v, patch);
         return;
     }
     for (int lane = 0; lane < 16; ++lane)

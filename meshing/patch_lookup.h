@@ -4,7 +4,9 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,10 +21,8 @@ public:
     std::uint32_t patchAt(std::uint32_t polygon, float u, float v) const {
         const Entry& entry = entries_[polygon];
         if (entry.locator != kNone) return locate(entry, u, v);
-        const auto column = static_cast<std::uint32_t>(u * static_cast<float>(entry.columns));
-        const auto row = static_cast<std::uint32_t>(v * static_cast<float>(entry.rows));
-        return entry.first + (row < entry.rows ? row : entry.rows - 1U) * entry.columns +
-               (column < entry.columns ? column : entry.columns - 1U);
+        const GridPoint p = gridPoint(u, v, entry.skew);
+        return entry.first + gridIndex(p.t, entry.rows) * entry.columns + gridIndex(p.s, entry.columns);
     }
 
     /// The same for 16 hits at once, which is faster. `patch` is left as it is where `polygon` is kNone.
@@ -37,9 +37,10 @@ public:
 
     // Building: polygons are added in order.
 
-    /// A polygon whose patches are a columns × rows grid in an affine chart (a triangle with one patch, a parallelogram),
-    /// row by row from `first`; both at most 65535.
-    void addGrid(std::uint32_t first, std::uint32_t columns, std::uint32_t rows);
+    /// A polygon whose patches are a columns × rows grid, row by row from `first`, bilinear if it is a quad (which must be
+    /// convex and planar); both at most 65535. A triangle has one patch.
+    void addGrid(const Scene& scene, const Polygon& polygon, std::uint32_t first, std::uint32_t columns,
+                 std::uint32_t rows);
     /// Any other polygon: `corners` are those of its patches (convex; a triangle ends in kNone), the first of which has
     /// the index `first`.
     void addPatches(const Scene& scene, const Polygon& polygon, std::uint32_t first,
@@ -53,10 +54,33 @@ private:
         std::uint32_t firstBack = kNone;
         std::uint32_t locator = kNone; ///< into locators_; kNone: a grid
         std::uint16_t columns = 1, rows = 1;
+        glm::vec2 skew{0.0F}; ///< see gridPoint
     };
 
-    /// Fine uniform grid over the polygon in a plane frame. A cell that lies in one patch holds it; another holds where
-    /// its candidates begin.
+    struct GridPoint {
+        float s, t;
+    };
+
+    /// Bilinear coordinates of a chart point of a quad. In the frame of two edges, v0 = (0, 0), v1 = (1, 0), v3 = (0, 1),
+    /// the last corner is v2 = (1, 1) + skew and the quad is (s, t) + s t skew, while the chart is (u, v), and beyond the
+    /// diagonal (u, v) + (u + v − 1) skew. Of the two solutions the one that goes on to (u, v) as the skew goes to 0.
+    static GridPoint gridPoint(float u, float v, glm::vec2 skew) {
+        if (skew.x == 0.0F && skew.y == 0.0F) return {u, v};
+        const float beyond = u + v > 1.0F ? u + v - 1.0F : 0.0F;
+        const float x = u + beyond * skew.x;
+        const float y = v + beyond * skew.y;
+        const float k = x * skew.y - y * skew.x;
+        return {2.0F * x / (1.0F - k + root((1.0F - k) * (1.0F - k) + 4.0F * skew.y * x)),
+                2.0F * y / (1.0F + k + root((1.0F + k) * (1.0F + k) + 4.0F * skew.x * y))};
+    }
+    static float root(float value) { return std::sqrt(value > 0.0F ? value : 0.0F); }
+    static std::uint32_t gridIndex(float coordinate, std::uint32_t count) {
+        const int index = static_cast<int>(coordinate * static_cast<float>(count));
+        return static_cast<std::uint32_t>(std::clamp(index, 0, static_cast<int>(count) - 1));
+    }
+    static void gridPatches(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]);
+
+    /// Fine uniform grid over the polygon in a plane frame; a cell holds a code that tells its patch, see decode.
     struct Locator {
         std::array<glm::vec2, 2> origin, axisU, axisV; ///< chart → grid, for u + v <= 1 and for the rest of a quad
         std::uint32_t columns, rows;
@@ -64,17 +88,37 @@ private:
         std::uint32_t firstCorner; ///< into gridCorners_, 4 per patch
     };
 
-    glm::vec2 gridPoint(const Locator& locator, float u, float v) const {
+    std::uint32_t locate(const Entry& entry, float u, float v) const;
+    static glm::vec2 cellPoint(const Locator& locator, float u, float v) {
         const std::size_t half = u + v <= 1.0F ? 0 : 1;
         return locator.origin[half] + u * locator.axisU[half] + v * locator.axisV[half];
     }
+    /// A cell that only one edge between two patches crosses.
+    struct Split {
+        glm::vec2 normal;
+        float offset;
+        std::uint32_t inside, outside; ///< patches where normal · point >= offset, and where not
+    };
+
+    std::uint32_t codeFor(const Locator& locator, std::span<const std::uint32_t> patches);
+    std::uint32_t decode(const Locator& locator, std::uint32_t code, glm::vec2 point) const {
+        if (code < kSplit) return code;
+        if (code >= kSearch) return search(locator, code - kSearch, point);
+        const Split& split = splits_[code - kSplit];
+        return split.normal.x * point.x + split.normal.y * point.y >= split.offset ? split.inside : split.outside;
+    }
     std::uint32_t search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const;
-    std::uint32_t locate(const Entry& entry, float u, float v) const;
+    void locate16(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]) const;
+    static void cells16(const Locator& locator, const float (&u)[16], const float (&v)[16], float (&x)[16],
+                        float (&y)[16], std::uint32_t (&cell)[16]);
 
     std::vector<Entry> entries_;
     std::vector<Locator> locators_;
-    std::vector<std::uint32_t> cells_;      ///< a patch relative to the polygon's first, or kAmbiguous + candidates
-    std::vector<std::uint32_t> candidates_; ///< per ambiguous cell: how many, then the patches
+    static constexpr std::uint32_t kSplit = 0x80000000;  ///< codes from here: kSplit + index into splits_
+    static constexpr std::uint32_t kSearch = 0xC0000000; ///< codes from here: kSearch + index into candidates_
+    std::vector<std::uint32_t> cells_;                   ///< codes; below kSplit: the patch, relative to the first
+    std::vector<Split> splits_;
+    std::vector<std::uint32_t> candidates_; ///< per searched cell: how many, then the patches
     std::vector<glm::vec2> gridCorners_;    ///< 4 per patch, in cells; a triangle repeats its last corner
 };
 
