@@ -13,7 +13,7 @@ namespace lambert {
 namespace {
 
 /// Bounds the first look at a large scene: a few minutes on two cores.
-constexpr double kMostRays = 4e9;
+constexpr double kMostRays = 1.3e9;
 constexpr double kBackFaceWarning = 0.01;
 
 class Stopwatch {
@@ -55,7 +55,7 @@ double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int reso
 int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t memoryLimit) {
     const auto count = static_cast<double>(mesh.size());
     int chosen = 0;
-    for (const int resolution : {128, 96, 64, 48, 32, 16}) {
+    for (int resolution = 128; resolution >= 16; resolution -= 8) {
         chosen = resolution;
         if (3.0 * resolution * resolution * count > kMostRays) continue;
         const double bytes = count * (static_cast<double>(sizeof(FormFactorRow)) +
@@ -138,7 +138,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     requireLight(scene);
     BakedScene result;
     Stopwatch watch;
-    const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == 0;
+    const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
     progress.begin("mesh", 0);
     result.scene = std::make_shared<Scene>(prepareScene(scene, {.joinTriangles = !keepPolygons}, &result.prepareReport));
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");

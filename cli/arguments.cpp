@@ -15,6 +15,23 @@
 
 namespace lambert {
 
+namespace {
+
+/// Like CLI::Range, but NaN is outside too, and so is the negative number that an unsigned option would wrap
+/// around.
+CLI::Validator between(double lowest, double highest) {
+    return {[=](const std::string& text) {
+                double value = 0.0;
+                if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
+                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest,
+                                       highest);
+                return std::string();
+            },
+            "", ""};
+}
+
+} // namespace
+
 void addSceneArguments(CLI::App& command, SceneArguments& a) {
     command.add_option("scene", a.path, "Scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
     command.add_option("--unit", a.unit, "Metres per unit of the file (OBJ only; glTF is in metres) [1]")
@@ -34,15 +51,16 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")->type_name("METRES")->group("Mesh");
     command
         .add_option("--patches", a.patches,
-                    "About so many patches; 0 keeps the input's polygons [5000]")
+                    "About so many patches; 0 keeps the input's polygons [theirs and a quarter or 5000 more]")
         ->type_name("N")
+        ->check(between(0.0, 2e8))
         ->excludes(length)
         ->group("Mesh");
     command.add_flag("--whole-contacts", a.wholeContacts, "Do not divide surfaces along the outlines of what stands on them")
         ->group("Mesh");
     command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
         ->type_name("DEGREES")
-        ->check(CLI::Range(0.0, 180.0))
+        ->check(between(0.0, 180.0))
         ->group("Mesh");
     command.add_option("--method", a.method, "How form factors are computed [hemicube]")
         ->check(CLI::IsMember({"hemicube"}))
@@ -57,24 +75,27 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->group("Transport");
     command.add_option("--memory-limit", a.memoryLimit, "For the form factors, when the resolution is chosen [8 GiB]")
         ->type_name("BYTES")
-        ->check(CLI::Range(1.0, 1e18))
+        ->check(between(1.0, 1e18))
         ->group("Transport");
     command.add_option("--solver", a.solver, "[jacobi]")->check(CLI::IsMember({"jacobi"}))->group("Solution");
     command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
         ->type_name("T")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(between(0.0, 1.0))
         ->group("Solution");
     command.add_option("--bounces", a.bounces, "At most so many bounces; 0: no limit [0]")
         ->type_name("K")
-        ->check(CLI::Range(0, 1'000'000))
+        ->check(between(0, 1e6))
         ->group("Solution");
 }
 
 void addRunArguments(CLI::App& command, RunArguments& a) {
-    command.add_option("--seed", a.seed, "Of all random numbers [1]")->type_name("S")->group("Run");
+    command.add_option("--seed", a.seed, "Of all random numbers [1]")
+        ->type_name("S")
+        ->check(between(0.0, 18446744073709551615.0))
+        ->group("Run");
     command.add_option("--threads", a.threads, "0: one per processor [0]")
         ->type_name("N")
-        ->check(CLI::Range(0, 1024))
+        ->check(between(0, 1024))
         ->group("Run");
     command.add_option("--json", a.json, "Writes the report as JSON")->type_name("FILE")->group("Run");
     command.add_flag("--quiet", a.quiet, "Only errors and warnings")->group("Run");
@@ -97,7 +118,7 @@ void addPictureArguments(CLI::App& command, PictureArguments& a) {
     command.add_option("--up", a.up, "[0,1,0]")->type_name("x,y,z")->needs(eye)->group("Picture");
     command.add_option("--fov", a.fov, "Vertical field of view [45]")->type_name("DEGREES")->needs(eye)->group("Picture");
     command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
-        ->check(CLI::Range(1, 64))
+        ->check(between(1, 64))
         ->group("Picture");
 }
 
@@ -160,7 +181,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     options.mesh.patchLength = a.patchLength;
     if (a.patchLength && !(*a.patchLength > 0.0))
         throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
-    if (a.patches) options.mesh.patches = *a.patches;
+    options.mesh.patches = a.patches;
     options.mesh.splitContacts = !a.wholeContacts;
     if (a.resolution && (*a.resolution < 16 || *a.resolution > 4096 || *a.resolution % 2 != 0))
         throw UsageError(

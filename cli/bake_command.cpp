@@ -2,11 +2,11 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
 #include "baking/exposure.h"
-#include "core/whole_file.h"
 #include "rendering/render.h"
 
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace lambert {
 
@@ -59,38 +60,33 @@ std::vector<Output> outputs(const BakeArguments& a) {
     return result;
 }
 
-/// Refuses to overwrite the scene, or one output with another.
-void checkTargets(const BakeArguments& a) {
-    std::vector<std::filesystem::path> targets = a.outputs;
-    for (const auto& path : {a.picture.path, a.run.json})
-        if (!path.empty()) targets.push_back(path);
-    if (targets.empty()) throw UsageError("nothing to write: give -o FILE, --image FILE or --json FILE");
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        std::error_code ignored;
-        if (std::filesystem::equivalent(targets[i], a.scene.path, ignored))
-            throw UsageError(fmt::format("{}: would overwrite the scene", targets[i].string()));
-        for (std::size_t j = 0; j < i; ++j)
-            if (targets[i].lexically_normal() == targets[j].lexically_normal())
-                throw UsageError(fmt::format("{}: named twice as a target", targets[i].string()));
-        requireWritable(targets[i]);
+/// Everything that will be written: an OBJ comes with an MTL.
+std::vector<std::filesystem::path> targetFiles(const BakeArguments& a, const std::vector<Output>& outputs) {
+    std::vector<std::filesystem::path> files;
+    for (const Output& output : outputs) {
+        files.push_back(output.path);
+        if (output.format == BakedFormat::Obj)
+            files.push_back(std::filesystem::path(output.path).replace_extension(".mtl"));
     }
+    for (const auto& path : {a.picture.path, a.run.json})
+        if (!path.empty()) files.push_back(path);
+    if (files.empty()) throw UsageError("nothing to write: give -o FILE, --image FILE or --json FILE");
+    return files;
 }
 
 Quantity quantityOf(const BakeArguments& a) {
     return a.quantity == "irradiance" ? Quantity::Irradiance : Quantity::Radiosity;
 }
 
-float exposureOf(const BakeArguments& a, const BakedMesh& baked) {
-    if (a.exposure == "auto") return automaticExposure(baked, quantityOf(a));
-    return std::stof(a.exposure);
-}
-
-void checkExposure(const std::string& text) {
-    if (text == "auto") return;
+/// The EV that was typed, none for auto. Throws UsageError.
+std::optional<float> typedExposure(const std::string& text) {
+    if (text == "auto") return std::nullopt;
     float value = 0.0F;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 100.0F)
         throw UsageError(fmt::format("--exposure: found \"{}\", allowed are auto or an EV from -100 to 100", text));
+    return value;
 }
 
 Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Picture& shot, float exposure,
@@ -117,10 +113,11 @@ void printSummary(const BakedScene& baked, float exposure, double seconds) {
 ExitCode bake(const BakeArguments& a) {
     const Clock total;
     const std::vector<Output> targets = outputs(a);
-    checkExposure(a.exposure);
+    const std::optional<float> typed = typedExposure(a.exposure);
     checkPicture(a.picture);
-    checkTargets(a);
     const BakeOptions options = bakeOptions(a.transport, a.run);
+    const std::vector<std::filesystem::path> files = targetFiles(a, targets);
+    checkTargets(files, filesOfScene(a.scene.path));
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -140,7 +137,7 @@ ExitCode bake(const BakeArguments& a) {
                                baked.resolution, static_cast<double>(baked.rayCount), baked.seconds.formFactors,
                                baked.solution.iterations, baked.solution.residual));
 
-    const float exposure = exposureOf(a, baked.baked);
+    const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
     const Clock writing;
     for (const Output& target : targets)
         writeBaked(baked.baked, target.path, target.format, {quantityOf(a), exposure, LAMBERT_VERSION});

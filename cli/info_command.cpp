@@ -1,9 +1,9 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
+#include "cli/targets.h"
 #include "cli/terminal_text.h"
 
-#include "core/whole_file.h"
 #include "meshing/prepare.h"
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -135,7 +136,7 @@ Json infoReport(const InfoArguments& a, const ReadResult& read, const SceneFacts
 }
 
 ExitCode info(const InfoArguments& a) {
-    if (!a.run.json.empty()) requireWritable(a.run.json);
+    checkTargets(std::array{a.run.json}, filesOfScene(a.scene.path));
     const ReadResult read = readScene(a.scene);
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
     const SceneFacts facts = gather(read.scene);

@@ -16,6 +16,13 @@ int fail(ExitCode code, const std::string& message) {
     return static_cast<int>(code);
 }
 
+/// Results that did not reach standard output are a failure.
+int finish(ExitCode code) {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        return fail(ExitCode::System, "standard output cannot be written");
+    return static_cast<int>(code);
+}
+
 int run(int argc, char** argv) {
     CLI::App program("Finite-element radiosity: bakes the light of a scene into vertex colours.", "lambert");
     program.set_version_flag("--version", LAMBERT_VERSION);
@@ -28,14 +35,11 @@ int run(int argc, char** argv) {
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& help) {
-        return program.exit(help);
+        return finish(static_cast<ExitCode>(program.exit(help)));
     } catch (const CLI::ParseError& error) {
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
     }
-    const ExitCode code = command();
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-        return fail(ExitCode::System, "standard output cannot be written");
-    return static_cast<int>(code);
+    return finish(command());
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
@@ -12,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -93,9 +95,10 @@ std::string table(const std::vector<ProbePoint>& points, const std::vector<Probe
 }
 
 ExitCode probe(const ProbeArguments& a) {
-    if (!a.output.empty()) requireWritable(a.output);
-    if (!a.run.json.empty()) requireWritable(a.run.json);
     const BakeOptions options = bakeOptions(a.transport, a.run);
+    std::vector<std::filesystem::path> inputs = filesOfScene(a.scene.path);
+    inputs.push_back(a.points);
+    checkTargets(std::array{a.output, a.run.json}, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);

@@ -3,13 +3,13 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/targets.h"
 #include "cli/terminal_progress.h"
-
-#include "core/whole_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 namespace lambert {
@@ -17,7 +17,7 @@ namespace lambert {
 namespace {
 
 ExitCode verify(const RunArguments& run) {
-    if (!run.json.empty()) requireWritable(run.json);
+    checkTargets(std::array{run.json}, {});
     applyThreads(run);
     TerminalProgress progress(run.quiet);
     const InterruptGuard interrupt(progress);

@@ -28,8 +28,9 @@ fs::path temporaryName(const fs::path& path) {
     return path.parent_path() / name;
 }
 
-void flushToDisk(const fs::path& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+/// `path` is the name that messages speak of.
+void flushToDisk(const fs::path& temporary, const fs::path& path) {
+    const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) fail(path, errno);
     const int result = ::fsync(file);
     const int error = errno;
@@ -43,7 +44,7 @@ void writeWholeFile(const fs::path& path, const std::function<void(const fs::pat
     const fs::path temporary = temporaryName(path);
     try {
         write(temporary);
-        flushToDisk(temporary);
+        flushToDisk(temporary, path);
         std::error_code error;
         fs::rename(temporary, path, error);
         if (error) fail(path, error.value());

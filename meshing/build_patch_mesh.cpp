@@ -189,13 +189,18 @@ double totalArea(const Scene& scene) {
 
 } // namespace
 
+std::size_t defaultPatches(const Scene& scene) {
+    const std::size_t polygons = scene.polygons.size();
+    return polygons + std::max<std::size_t>(5000, polygons / 4);
+}
+
 PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
     if (options.patchLength && !(*options.patchLength > 0.0))
         throw UsageError(fmt::format("patch length: found {}, allowed is a length above 0", *options.patchLength));
     MeshReport ownReport;
     MeshReport& counts = report != nullptr ? *report : ownReport;
     counts = MeshReport{};
-    if (!options.patchLength && options.patches == 0) return keepPolygons(scene, counts);
+    if (!options.patchLength && options.patches == std::size_t{0}) return keepPolygons(scene, counts);
 
     const VertexIndex index(scene.positions);
     const std::vector<PlanarContact> contacts =
@@ -207,19 +212,21 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
                                          *options.patchLength, predicted, kMostPatches));
         return divide(scene, index, contacts, *options.patchLength, progress, counts);
     }
-    if (static_cast<double>(options.patches) > kMostPatches)
-        throw UsageError(fmt::format("patches: found {}, allowed are {:.0f}", options.patches, kMostPatches));
+    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene)));
+    if (wanted > kMostPatches)
+        throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
+    const auto polygons = static_cast<double>(scene.polygons.size());
+    if (polygons >= wanted) return divide(scene, index, contacts, kUnrefined, progress, counts);
 
-    // The number of patches falls about as 1 / length² until only the input's polygons are left.
-    const auto wanted = static_cast<double>(options.patches);
-    if (static_cast<double>(scene.polygons.size()) >= wanted)
-        return divide(scene, index, contacts, kUnrefined, progress, counts);
+    // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
     double length = std::sqrt(totalArea(scene) / wanted);
     PatchMesh mesh = divide(scene, index, contacts, length, progress, counts);
     for (int attempt = 0; attempt < 5; ++attempt) {
-        const double ratio = static_cast<double>(mesh.size()) / wanted;
-        if (std::abs(ratio - 1.0) < 0.03) break;
-        length *= std::sqrt(ratio);
+        const auto found = static_cast<double>(mesh.size());
+        if (std::abs(found / wanted - 1.0) < 0.03) break;
+        // With few polygons their number is no bound: two patches of a quad are not two triangles.
+        const double base = polygons < 0.5 * wanted ? 0.0 : polygons;
+        length *= std::sqrt(std::max(found - base, 1.0) / (wanted - base));
         mesh = divide(scene, index, contacts, length, progress, counts);
     }
     return mesh;

@@ -10,9 +10,12 @@ namespace lambert {
 
 struct MeshOptions {
     std::optional<double> patchLength; //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
-    std::size_t patches = 5000;        //!< about so many; 0 keeps the input's polygons as they are
+    std::optional<std::size_t> patches; //!< about so many; 0 keeps the input's polygons; none: see defaultPatches
     bool splitContacts = true;         //!< divide a polygon along the edges of others that stand on it
 };
+
+/// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many.
+std::size_t defaultPatches(const Scene& scene);
 
 struct MeshReport {
     double patchLength = 0.0;              //!< the length used, metres; infinite where nothing was refined

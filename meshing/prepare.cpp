@@ -12,9 +12,19 @@ namespace lambert {
 
 namespace {
 
+/// Whether a polygon is no higher over its longest edge than `tolerance`: its vertices lie on its own edges.
+bool isNeedle(const Scene& scene, const Polygon& polygon, float tolerance) {
+    float longest = 0.0F;
+    for (int k = 0; k < polygon.size(); ++k)
+        longest = std::max(longest, glm::distance(corner(scene, polygon, k),
+                                                  corner(scene, polygon, (k + 1) % polygon.size())));
+    const float height = (polygon.isQuad() ? 1.0F : 2.0F) * glm::length(areaVector(scene, polygon)) / longest;
+    return !(height > tolerance);
+}
+
 /// The polygon on welded vertices, without repeated corners; nothing if less than a triangle is left.
 std::optional<Polygon> weldPolygon(const Polygon& polygon, const std::vector<std::uint32_t>& representative,
-                                   const Scene& scene) {
+                                   const Scene& scene, float tolerance) {
     Polygon welded = polygon;
     std::size_t count = 0;
     for (int k = 0; k < polygon.size(); ++k) {
@@ -24,8 +34,7 @@ std::optional<Polygon> weldPolygon(const Polygon& polygon, const std::vector<std
     }
     if (count < 3) return std::nullopt;
     if (count == 3) welded.vertices[3] = kNone;
-    const glm::vec3 area = areaVector(scene, welded);
-    if (!(glm::dot(area, area) > 0.0F)) return std::nullopt;
+    if (isNeedle(scene, welded, tolerance)) return std::nullopt;
     return welded;
 }
 
@@ -76,7 +85,8 @@ float weldTolerance(const Scene& scene) { return std::max(1e-6F * boundsOf(scene
 
 Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareReport* report) {
     PrepareReport counts;
-    const std::vector<std::uint32_t> representative = weldPositions(scene.positions, weldTolerance(scene));
+    const float tolerance = weldTolerance(scene);
+    const std::vector<std::uint32_t> representative = weldPositions(scene.positions, tolerance);
     for (std::uint32_t i = 0; i < representative.size(); ++i) counts.weldedVertices += representative[i] != i ? 1 : 0;
 
     Scene prepared;
@@ -86,7 +96,7 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     prepared.cameras = scene.cameras;
     prepared.polygons.reserve(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
-        if (const auto welded = weldPolygon(polygon, representative, scene))
+        if (const auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance))
             prepared.polygons.push_back(*welded);
         else
             ++counts.collapsedPolygons;

@@ -12,7 +12,7 @@ struct PrepareOptions {
 
 struct PrepareReport {
     std::size_t weldedVertices = 0;    //!< vertices that coincided with another
-    std::size_t collapsedPolygons = 0; //!< dropped: nothing is left of them once their vertices are welded
+    std::size_t collapsedPolygons = 0; //!< dropped: once their vertices are welded nothing is left, or a needle without height
     std::size_t joinedPairs = 0;       //!< triangle pairs that became quads
 };
 

@@ -10,41 +10,37 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <span>
 
 namespace lambert {
 
 namespace {
 
-/// The two geometries of the Embree scene.
-enum GeometryId : unsigned { kTriangles = 0, kQuads = 1 };
-
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene, std::span<const std::uint32_t> ids,
-                    GeometryId geometryId) {
-    if (ids.empty()) return;
-    const bool quads = geometryId == kQuads;
-    RTCGeometry geometry = rtcNewGeometry(device, quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t corners = quads ? 4 : 3;
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3, corners * 4, ids.size()));
+/// All polygons as one quad geometry, so that Embree's primitive is our polygon; a triangle repeats its last corner, and
+/// its chart is that of the quad's first half.
+void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t),
+                                scene.polygons.size()));
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.positions.size()));
     if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
-    for (std::size_t i = 0; i < ids.size(); ++i)
-        std::copy_n(scene.polygons[ids[i]].vertices.data(), corners, indices + corners * i);
-    for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    for (const Polygon& polygon : scene.polygons) {
+        const auto& v = polygon.vertices;
+        indices = std::copy_n(std::array{v[0], v[1], v[2], polygon.isQuad() ? v[3] : v[2]}.begin(), 4, indices);
+    }
+    for (const glm::vec3& position : scene.positions) {
         // Unused vertices may be anything in the file; Embree must not see them.
-        const glm::vec3 p = isFinite(scene.positions[i]) ? scene.positions[i] : glm::vec3(0.0F);
-        vertices[3 * i] = p.x;
-        vertices[3 * i + 1] = p.y;
-        vertices[3 * i + 2] = p.z;
+        const glm::vec3 p = isFinite(position) ? position : glm::vec3(0.0F);
+        vertices = std::copy_n(std::array{p.x, p.y, p.z}.begin(), 3, vertices);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(target, geometry, geometryId);
+    rtcAttachGeometry(target, geometry);
     rtcReleaseGeometry(geometry);
 }
 
@@ -66,18 +62,14 @@ void load(const glm::vec3& origin, const RayPacket& packet, RTCRayHit16& rays) {
     }
 }
 
-/// `polygonOf` holds the polygons of all triangles, then, from `firstQuad`, of all quads.
 LAMBERT_VECTOR_CLONES
-void store(const RTCRayHit16& rays, const std::uint32_t* polygonOf, std::uint32_t firstQuad, RayPacket& packet) {
+void store(const RTCRayHit16& rays, RayPacket& packet) {
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         packet.facing[lane] = rays.ray.dir_x[lane] * rays.hit.Ng_x[lane] + rays.ray.dir_y[lane] * rays.hit.Ng_y[lane] +
                               rays.ray.dir_z[lane] * rays.hit.Ng_z[lane];
         packet.u[lane] = rays.hit.u[lane];
         packet.v[lane] = rays.hit.v[lane];
-        const bool hit = rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
-        const std::uint32_t primitive = rays.hit.primID[lane] + (rays.hit.geomID[lane] == kQuads ? firstQuad : 0);
-        const std::uint32_t polygon = polygonOf[hit ? primitive : 0];
-        packet.polygon[lane] = hit ? polygon : kNone;
+        packet.polygon[lane] = rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? rays.hit.primID[lane] : kNone;
     }
 }
 
@@ -103,8 +95,6 @@ struct RayCaster::Impl {
     float largestCoordinate = 0.0F;
     RTCDevice device = nullptr;
     RTCScene embree = nullptr;
-    std::vector<std::uint32_t> polygonOf; ///< of each triangle, then of each quad that Embree has
-    std::uint32_t firstQuad = 0;
 
     ~Impl() {
         if (embree != nullptr) rtcReleaseScene(embree);
@@ -128,21 +118,12 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl_->bounds = boundsOf(scene);
     const glm::vec3 largest = glm::max(glm::abs(impl_->bounds.lower), glm::abs(impl_->bounds.upper));
     impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
-    for (const bool quads : {false, true}) {
-        if (quads) impl_->firstQuad = static_cast<std::uint32_t>(impl_->polygonOf.size());
-        for (std::uint32_t i = 0; i < scene.polygons.size(); ++i)
-            if (scene.polygons[i].isQuad() == quads) impl_->polygonOf.push_back(i);
-    }
-
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr)
         throw SystemError(fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     impl_->embree = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->embree, RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
-    const std::span<const std::uint32_t> polygons(impl_->polygonOf);
-    attachPolygons(impl_->device, impl_->embree, scene, polygons.first(impl_->firstQuad), kTriangles);
-    attachPolygons(impl_->device, impl_->embree, scene, polygons.subspan(impl_->firstQuad), kQuads);
-    if (impl_->polygonOf.empty()) impl_->polygonOf.push_back(kNone); // read, not used, where a ray hits nothing
+    if (!scene.polygons.empty()) attachPolygons(impl_->device, impl_->embree, scene);
     // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
     // (The device's own "threads" setting would limit oneTBB for the whole program.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->embree); });
@@ -162,8 +143,7 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    const std::uint32_t primitive = query.hit.primID + (query.hit.geomID == kQuads ? impl_->firstQuad : 0);
-    return Hit{impl_->polygonOf[primitive], query.hit.u, query.hit.v, query.ray.tfar,
+    return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
                glm::dot(ray.direction, normal) < 0.0F};
 }
 
@@ -175,7 +155,7 @@ void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     alignas(64) RTCRayHit16 rays;
     load(origin, packet, rays);
     rtcIntersect16(packet.active, impl_->embree, &context, &rays);
-    store(rays, impl_->polygonOf.data(), impl_->firstQuad, packet);
+    store(rays, packet);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {

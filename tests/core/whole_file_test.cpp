@@ -1,0 +1,161 @@
+#include "core/whole_file.h"
+
+#include "core/error.h"
+#include "tests/scene/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
+
+#include <unistd.h>
+
+namespace lambert {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contentOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> namesIn(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string failureOf(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const SystemError& error) {
+        return error.what();
+    }
+    ADD_FAILURE() << "no SystemError";
+    return {};
+}
+
+TEST(WriteWholeFile, WritesTheContentAndNothingElse) {
+    const TemporaryFolder folder;
+    const std::string content("zero \0 and line ends \r\n\n stay", 28);
+    writeWholeFile(folder.path() / "new.bin", content);
+    EXPECT_EQ(contentOf(folder.path() / "new.bin"), content);
+    writeWholeFile(folder.path() / "empty", "");
+    EXPECT_EQ(fs::file_size(folder.path() / "empty"), 0U);
+    const std::string large(3'000'001, 'x');
+    writeWholeFile(folder.path() / "large", large);
+    EXPECT_EQ(contentOf(folder.path() / "large"), large);
+    EXPECT_EQ(namesIn(folder.path()), (std::vector<std::string>{"empty", "large", "new.bin"}));
+}
+
+TEST(WriteWholeFile, ReplacesAnOldFile) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("result.csv", "an old and longer content");
+    writeWholeFile(file, "new");
+    EXPECT_EQ(contentOf(file), "new");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+}
+
+TEST(WriteWholeFile, KeepsTheOldFileAndNoTemporaryOneIfWritingFails) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("picture.png", "old");
+    const auto halfThenThrow = [](const fs::path& temporary) {
+        std::ofstream(temporary) << "half a pic";
+        throw std::runtime_error("the encoder gave up");
+    };
+    try {
+        writeWholeFile(file, halfThenThrow);
+        FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "the encoder gave up");
+    }
+    EXPECT_EQ(contentOf(file), "old");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"picture.png"});
+}
+
+TEST(WriteWholeFile, FailsIfTheLibraryWroteNothing) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("picture.png", "old");
+    const std::string message = failureOf([&] { writeWholeFile(file, [](const fs::path&) {}); });
+    EXPECT_NE(message.find("picture.png"), std::string::npos) << message;
+    EXPECT_EQ(contentOf(file), "old");
+}
+
+TEST(WriteWholeFile, GivesTheLibraryANameInTheSameFolderWithTheSameExtension) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "picture.v2.exr";
+    fs::path given;
+    writeWholeFile(file, [&](const fs::path& temporary) {
+        given = temporary;
+        std::ofstream(temporary) << "pixels";
+    });
+    EXPECT_EQ(given.parent_path(), folder.path());
+    EXPECT_EQ(given.extension(), ".exr");
+    EXPECT_NE(given, file);
+    EXPECT_EQ(contentOf(file), "pixels");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"picture.v2.exr"});
+}
+
+TEST(WriteWholeFile, NamesPathAndReasonIfTheFolderIsMissing) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "missing" / "a.txt";
+    const std::string message = failureOf([&] { writeWholeFile(file, "content"); });
+    EXPECT_NE(message.find(file.string()), std::string::npos) << message;
+    EXPECT_NE(message.find("No such file"), std::string::npos) << message;
+    EXPECT_TRUE(namesIn(folder.path()).empty());
+}
+
+TEST(WriteWholeFile, DoesNotReplaceAFolder) {
+    const TemporaryFolder folder;
+    folder.write("target/inside.txt", "kept");
+    const std::string message = failureOf([&] { writeWholeFile(folder.path() / "target", "content"); });
+    EXPECT_NE(message.find("irectory"), std::string::npos) << message;
+    EXPECT_EQ(contentOf(folder.path() / "target" / "inside.txt"), "kept");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"target"});
+}
+
+TEST(WriteWholeFile, AcceptsANameWithoutFolderAndOddNames) {
+    const TemporaryFolder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    writeWholeFile("plain.txt", "a");
+    writeWholeFile(".hidden", "b");
+    writeWholeFile("with space", "c");
+    fs::current_path(before);
+    EXPECT_EQ(namesIn(folder.path()), (std::vector<std::string>{".hidden", "plain.txt", "with space"}));
+}
+
+TEST(RequireWritable, AcceptsNewAndOldFiles) {
+    const TemporaryFolder folder;
+    requireWritable(folder.path() / "new.txt");
+    requireWritable(folder.write("old.txt", "kept"));
+    requireWritable("in_the_current_folder.txt");
+    EXPECT_EQ(contentOf(folder.path() / "old.txt"), "kept");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"old.txt"});
+}
+
+TEST(RequireWritable, RefusesFoldersAndMissingFolders) {
+    const TemporaryFolder folder;
+    EXPECT_NE(failureOf([&] { requireWritable(folder.path()); }).find(folder.path().string()),
+              std::string::npos);
+    failureOf([&] { requireWritable(folder.path() / "missing" / "a.txt"); });
+    folder.write("file", "");
+    failureOf([&] { requireWritable(folder.path() / "file" / "a.txt"); });
+}
+
+TEST(RequireWritable, RefusesAFolderWithoutPermission) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    const TemporaryFolder folder;
+    fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+    failureOf([&] { requireWritable(folder.path() / "a.txt"); });
+    failureOf([&] { writeWholeFile(folder.path() / "a.txt", "content"); });
+    fs::permissions(folder.path(), fs::perms::owner_all);
+}
+
+} // namespace
+} // namespace lambert
