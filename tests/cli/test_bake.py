@@ -97,12 +97,13 @@ class TheReport(ProgramTest):
                          ["floor", "ceiling", "light", "back", "right", "left", "short", "tall"])
 
     def test_energy_terms_balance_to_the_printed_imbalance(self):
-        done = self.run_well("bake", CORNELL_OBJ, *SMALL, "--json", self.folder / "report.json")
+        done = self.run_well("bake", CORNELL_OBJ, "--patches", "1000", "--resolution", "64", "--json",
+                             self.folder / "report.json")
         energy = read_json(self.folder / "report.json")["energy"]
         gained = [e + r for e, r in zip(energy["emitted"], energy["received"])]
         lost = [sum(terms) for terms in zip(energy["absorbed"], energy["back_faces"], energy["escaped"])]
         for g, l in zip(gained, lost):
-            self.assert_close(l, g, 0.01)  # the rows of 32-pixel hemicubes are not exactly reciprocal
+            self.assert_close(l, g, 0.01)  # hemicubes' rows are not exactly reciprocal; 0.5 % is lost at this size
         largest = max((abs(g - l) / g for g, l in zip(gained, lost)))
         self.assertAlmostEqual(abs(energy["imbalance"]), largest, delta=1e-9)
         printed = float(done.stdout.split("energy imbalance")[1].split(",")[0])
@@ -242,7 +243,7 @@ class TheLight(ProgramTest):
             self.assert_close(b, expected, 1e-3)
 
     def test_two_sided_emits_twice(self):
-        one, two = (self.bake(self.ONE, *SMALL, *option) for option in ((), ("--two-sided",)))
+        one, two = (self.bake(self.ONE, *self.FINE, *option) for option in ((), ("--two-sided",)))
         self.assertEqual(two["patches"], 2 * one["patches"])
         self.assert_close(materials(two)["a"]["area"], materials(one)["a"]["area"], 1e-6)
         self.assert_close(two["energy"]["emitted"][0], 2 * one["energy"]["emitted"][0], 1e-6)
@@ -250,10 +251,14 @@ class TheLight(ProgramTest):
                           two["energy"]["emitted"][0], 0.01)
 
     def test_unit_changes_lengths_and_flux_but_not_irradiance(self):
-        metres, millimetres = (self.bake(CORNELL_OBJ, *SMALL, "--unit", unit) for unit in (1, 0.001))
+        metres, half, millimetres = (self.bake(CORNELL_OBJ, *SMALL, "--unit", unit) for unit in (1, 0.5, 0.001))
+        for first, second in zip(metres["materials"], half["materials"]):  # a power of two: no digit changes
+            self.assertEqual(second["mean_irradiance"], first["mean_irradiance"], first["name"])
+            self.assertEqual(second["area"], first["area"] / 4, first["name"])
         for first, second in zip(metres["materials"], millimetres["materials"]):
             self.assert_close(second["area"], 1e-6 * first["area"], 1e-4, first["name"])
-            self.assert_close(second["mean_irradiance"][0], first["mean_irradiance"][0], 0.005, first["name"])
+            # Rounding makes another mesh, and with it other random rotations: about 1 % with so few patches and rays.
+            self.assert_close(second["mean_irradiance"][0], first["mean_irradiance"][0], 0.04, first["name"])
 
     def test_exposure_by_hand_and_auto(self):
         for typed, expected in (("2", 2), ("+2.5", 2.5), ("-3", -3)):

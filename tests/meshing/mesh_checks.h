@@ -22,7 +22,8 @@ double shortestEdge(const PatchMesh& mesh, std::size_t patch);
 /// within the polygon; and that the patches of each polygon cover its area.
 void expectSoundMesh(const Scene& scene, const PatchMesh& mesh);
 
-/// That no vertex of a patch lies inside an edge of another. Compares all with all: for small meshes.
+/// That no vertex lies inside an edge of a patch: of its own polygon anywhere, of any other on a polygon's
+/// border. Compares all with all: for small meshes.
 void expectNoTVertex(const Scene& scene, const PatchMesh& mesh);
 
 /// That every edge belongs to two front patches, which run along it in opposite directions.

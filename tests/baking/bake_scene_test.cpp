@@ -1,0 +1,160 @@
+#include "baking/bake_scene.h"
+#include "baking/probe.h"
+#include "core/error.h"
+#include "scene/example_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lambert {
+namespace {
+
+using Quad = std::array<glm::vec3, 4>;
+
+BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
+    BakeOptions options;
+    options.mesh.patches = patches;
+    options.resolution = resolution;
+    options.jacobi.tolerance = 1e-6;
+    Progress progress;
+    return bakeScene(scene, options, progress);
+}
+
+/// A lit room 2 × 2 × 2 with a box on its floor, whose base is not aligned with the floor's patches.
+Scene roomWithBox() {
+    std::array<Material, 6> walls;
+    for (Material& wall : walls) wall = greyMaterial("wall", 0.5F);
+    walls[5] = greyMaterial("lamp", 0.5F, 1.0F);
+    Scene scene = boxScene(glm::vec3(2.0F), walls);
+    const std::array<glm::vec3, 4> base{{{0.83F, 0.61F, 0}, {1.37F, 0.79F, 0}, {1.19F, 1.33F, 0}, {0.65F, 1.15F, 0}}};
+    scene.materials.push_back(greyMaterial("box", 0.5F));
+    const auto addQuad = [&](const Quad& quad) {
+        const auto first = static_cast<std::uint32_t>(scene.positions.size());
+        scene.positions.insert(scene.positions.end(), quad.begin(), quad.end());
+        scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
+    };
+    const glm::vec3 up(0, 0, 0.5F);
+    for (std::size_t k = 0; k < 4; ++k)
+        addQuad({base[k], base[(k + 1) % 4], base[(k + 1) % 4] + up, base[k] + up});
+    addQuad({base[0] + up, base[1] + up, base[2] + up, base[3] + up});
+    return scene;
+}
+
+TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {
+    const Material wall = greyMaterial("wall", 0.5F, 1.0F);
+    const BakedScene baked = bake(boxScene({2, 1.5F, 1}, {wall, wall, wall, wall, wall, wall}), 300, 32);
+    // Rows sum to 1: only the residual (1e-6) and float rounding are left.
+    for (const Rgb& b : baked.baked.radiosity) EXPECT_NEAR(static_cast<double>(b.x), 2.0, 1e-5);
+    for (const Rgb& e : baked.baked.irradiance) EXPECT_NEAR(static_cast<double>(e.x), 2.0, 1e-5);
+}
+
+TEST(BakeScene, FacesOfTheBakedMeshAreThePatches) {
+    const BakedScene baked = bake(roomWithBox(), 400, 16);
+    ASSERT_EQ(baked.baked.faces.size(), baked.mesh.size());
+    for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
+        EXPECT_EQ(baked.baked.isQuad(i), baked.mesh.isQuad(i));
+        for (int k = 0; k < baked.mesh.cornerCount(i); ++k)
+            EXPECT_EQ(baked.baked.positions[baked.baked.faces[i][static_cast<std::size_t>(k)]], baked.mesh.position(i, k));
+    }
+}
+
+TEST(BakeScene, VerticesAreSplitAtCreases) {
+    const Material wall = greyMaterial("wall", 0.5F, 1.0F);
+    const BakedScene baked = bake(boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall}), 0, 16);
+    EXPECT_EQ(baked.baked.positions.size(), 24U); // four of its own for each of six faces
+}
+
+TEST(BakeScene, DarknessUnderAnObjectDoesNotReachTheFloorAroundIt) {
+    const BakedScene baked = bake(roomWithBox(), 1500, 64);
+    const BakedMesh& mesh = baked.baked;
+    std::size_t contactVertices = 0;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        if (mesh.faceMaterials[face] == 6 || baked.mesh.normal[face].z < 0.99F) continue; // the floor only
+        const bool covered = baked.solution.covered[face] > 0.99F;
+        for (int k = 0; k < baked.mesh.cornerCount(face); ++k) {
+            const std::uint32_t vertex = mesh.faces[face][static_cast<std::size_t>(k)];
+            if (covered) {
+                EXPECT_LT(mesh.irradiance[vertex].x, 1e-6F);
+                ++contactVertices;
+            } else {
+                EXPECT_GT(mesh.irradiance[vertex].x, 0.05F); // the darkest corner sees at least 1/20 of the lamp's light
+            }
+        }
+    }
+    EXPECT_GT(contactVertices, 20U);
+}
+
+TEST(BakeScene, WarnsAndNamesTheMaterialWhereLightMeetsBacks) {
+    Scene scene = roomWithBox();
+    for (Polygon& polygon : scene.polygons)
+        if (polygon.material == 6) std::swap(polygon.vertices[1], polygon.vertices[3]);
+    const BakedScene baked = bake(scene, 400, 32);
+    ASSERT_EQ(baked.warnings.size(), 1U);
+    EXPECT_NE(baked.warnings[0].find("\"box\""), std::string::npos) << baked.warnings[0];
+    EXPECT_NE(baked.warnings[0].find("--two-sided"), std::string::npos);
+    EXPECT_TRUE(bake(roomWithBox(), 400, 32).warnings.empty());
+}
+
+TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
+    Scene scene = roomWithBox();
+    scene.polygons.resize(6);
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    for (const glm::vec3 p : {glm::vec3(0.5F, 0.5F, 1), glm::vec3(1.5F, 0.5F, 1), glm::vec3(1.5F, 1.5F, 1), glm::vec3(0.5F, 1.5F, 1)})
+        scene.positions.push_back(p);
+    scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
+    scene.materials[6].twoSided = true;
+    const BakedScene baked = bake(scene, 600, 32);
+    double front = 0.0;
+    double back = 0.0;
+    for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
+        if (baked.mesh.material[i] != 6) continue;
+        (baked.mesh.isBack(i) ? back : front) += static_cast<double>(baked.mesh.area[i]) * baked.solution.irradiance[i].x;
+    }
+    EXPECT_GT(front, 2.0 * back); // the lamp is above
+    EXPECT_GT(back, 0.05);
+    EXPECT_EQ(baked.rows.backFaceFraction, 0.0);
+}
+
+TEST(BakeScene, ASceneWithoutLightNamesTheOption) {
+    const Material wall = greyMaterial("wall", 0.5F);
+    try {
+        bake(boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall}), 100, 16);
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("--emit"), std::string::npos);
+    }
+}
+
+TEST(BakeScene, EnergyImbalanceOfRawRowsIsSmallAt1000Patches) {
+    const BakedScene baked = bake(roomWithBox(), 1000, 64);
+    EXPECT_LE(std::abs(baked.solution.energy.imbalance()), 5e-3); // reciprocity is not enforced
+}
+
+TEST(Probe, PointOnASurfaceIsInterpolatedAndPointInSpaceIsGathered) {
+    const Material wall = greyMaterial("wall", 0.5F, 1.0F);
+    const BakedScene baked = bake(boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall}), 200, 32);
+    const std::array points{ProbePoint{{0.3F, 0.4F, 0}, {0, 0, 1}}, ProbePoint{{0.3F, 0.4F, 0.5F}, {0, 3, 4}},
+                            ProbePoint{{0, 0, 0}, {0, 0, 1}}};
+    const auto readings = probeIrradiance(baked, points);
+    EXPECT_TRUE(readings[0].onSurface);
+    EXPECT_FALSE(readings[1].onSurface);
+    for (const ProbeReading& reading : readings) EXPECT_NEAR(reading.irradiance.x, 2.0, 1e-4);
+}
+
+TEST(Probe, PointUnderATwoSidedSheetReadsTheSideItFaces) {
+    const std::array<Quad, 2> quads{{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
+                                     {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}}}};
+    std::array materials{greyMaterial("sheet", 0.5F), greyMaterial("lamp", 0.5F, 1.0F)};
+    materials[0].twoSided = true;
+    const BakedScene baked = bake(quadScene(quads, materials), 200, 32);
+    const std::array points{ProbePoint{{0.5F, 0.5F, 0}, {0, 0, 1}}, ProbePoint{{0.5F, 0.5F, 0}, {0, 0, -1}}};
+    const auto readings = probeIrradiance(baked, points);
+    EXPECT_GT(readings[0].irradiance.x, 0.1);
+    EXPECT_EQ(readings[1].irradiance.x, 0.0);
+}
+
+} // namespace
+} // namespace lambert
