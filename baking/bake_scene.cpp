@@ -15,6 +15,7 @@ namespace {
 /// Bounds the first look at a large scene: a few minutes on two cores.
 constexpr double kMostRays = 1.3e9;
 constexpr double kBackFaceWarning = 0.01;
+constexpr double kUndividedWarning = 1e-3; ///< of the area
 
 class Stopwatch {
 public:
@@ -125,11 +126,11 @@ void collectWarnings(BakedScene& result) {
         warn(fmt::format("{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
                          "or make surfaces two-sided with --two-sided",
                          100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
-    if (result.meshReport.undividedPolygons > 0)
-        warn(fmt::format("{} polygons could not be divided cleanly and stay whole", result.meshReport.undividedPolygons));
-    if (result.meshReport.ignoredContactPolygons > 0)
-        warn(fmt::format("{} polygons are not divided where others stand on them: the outlines cross",
-                         result.meshReport.ignoredContactPolygons));
+    // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
+    const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);
+    if (result.meshReport.undividedArea > kUndividedWarning * area)
+        warn(fmt::format("{} polygons could not be divided cleanly and stay whole ({:.2g} % of the area)",
+                         result.meshReport.undividedPolygons, 100.0 * result.meshReport.undividedArea / area));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/terminal_text.h"
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -69,6 +70,7 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         .add_option("--resolution", a.resolution,
                     "Pixels along a hemicube's edge, even, 16 to 4096 [128, less if time or memory ask for it]")
         ->type_name("R")
+        ->check(between(16.0, 4096.0))
         ->group("Transport");
     command.add_option("--rotation", a.rotation, "Of the hemicubes about their normals [random]")
         ->check(CLI::IsMember({"random", "fixed"}))
@@ -183,7 +185,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
         throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
     options.mesh.patches = a.patches;
     options.mesh.splitContacts = !a.wholeContacts;
-    if (a.resolution && (*a.resolution < 16 || *a.resolution > 4096 || *a.resolution % 2 != 0))
+    if (a.resolution && *a.resolution % 2 != 0)
         throw UsageError(
             fmt::format("--resolution: found {}, allowed are even numbers from 16 to 4096", *a.resolution));
     options.resolution = a.resolution;
@@ -256,9 +258,9 @@ Picture picture(const PictureArguments& a, const Scene& scene, const RayCaster& 
 void applyThreads(const RunArguments& run) { setThreadCount(run.threads); }
 
 void logLine(const RunArguments& run, const std::string& line) {
-    if (!run.quiet) fmt::print(stderr, "{}\n", line);
+    if (!run.quiet) writeLog(line + "\n");
 }
 
-void warnLine(const std::string& line) { fmt::print(stderr, "warning: {}\n", line); }
+void warnLine(const std::string& line) { writeLog("warning: " + line + "\n"); }
 
 } // namespace lambert

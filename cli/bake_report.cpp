@@ -52,6 +52,15 @@ Json inputJson(const BakeReportInput& in) {
             {"joined_pairs", in.baked.prepareReport.joinedPairs}};
 }
 
+Json meshJson(const BakedScene& baked) {
+    return {{"undivided_polygons", baked.meshReport.undividedPolygons},
+            {"undivided_area", baked.meshReport.undividedArea},
+            {"contact_polygons", baked.meshReport.contactPolygons},
+            {"ignored_contact_polygons", baked.meshReport.ignoredContactPolygons},
+            {"degenerate_patches", baked.meshReport.degeneratePatches},
+            {"separated_faces", baked.separatedFaces}};
+}
+
 } // namespace
 
 Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -96,6 +105,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["camera"] = in.picture ? cameraJson(*in.picture) : Json(nullptr);
     report["exposure_ev"] = in.exposure;
     report["input"] = inputJson(in);
+    report["mesh"] = meshJson(baked);
     report["form_factors"] = {{"entries", baked.rows.entries},
                               {"bytes", baked.rows.bytes},
                               {"largest_closure_error", baked.rows.largestClosureError},

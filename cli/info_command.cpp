@@ -77,8 +77,9 @@ void print(const InfoArguments& a, const ReadResult& read, const SceneFacts& fac
         fmt::print("            large for a room: if the file is in millimetres, use --unit 0.001\n");
     fmt::print("polygons    {} triangles, {} quads, {:.5g} m²; {} in the file\n", facts.triangles, facts.quads, facts.area,
                report.inputPolygons);
-    fmt::print("dropped     {} non-finite, {} degenerate, {} collapsed by welding\n", report.nonFinitePolygons,
-               report.degeneratePolygons, facts.prepared.collapsedPolygons);
+    fmt::print("dropped     {} non-finite, {} degenerate, {} less high than {:.2g} m (2e-6 of the diagonal)\n",
+               report.nonFinitePolygons, report.degeneratePolygons, facts.prepared.collapsedPolygons,
+               2.0F * weldTolerance(scene));
     fmt::print("changed     {} polygons split, {} vertices welded, {} triangle pairs joined\n", report.splitPolygons,
                facts.prepared.weldedVertices, facts.prepared.joinedPairs);
     fmt::print("slivers     {} polygons less high than 1/10000 of their longest edge\n", facts.slivers);

@@ -1,7 +1,9 @@
 #include "cli/commands.h"
 #include "cli/terminal_text.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -12,7 +14,7 @@ namespace {
 using lambert::ExitCode;
 
 int fail(ExitCode code, const std::string& message) {
-    fmt::print(stderr, "lambert: {}\n", lambert::oneLine(message));
+    lambert::writeLog("lambert: " + lambert::oneLine(message) + "\n");
     return static_cast<int>(code);
 }
 
@@ -42,9 +44,17 @@ int run(int argc, char** argv) {
     return finish(command());
 }
 
+/// A closed stdin, stdout or stderr is occupied, or the next file to be opened would become it. Writing to it fails as before.
+void occupyStandardStreams() {
+    int file = 0;
+    while (file >= 0 && file <= STDERR_FILENO) file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (file >= 0) ::close(file);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
+    occupyStandardStreams();
     std::signal(SIGPIPE, SIG_IGN); // a pipe closed early is an error of writing, not a silent death
     try {
         return run(argc, argv);

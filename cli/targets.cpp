@@ -20,9 +20,9 @@ namespace {
 bool sameFile(const fs::path& a, const fs::path& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
-    const fs::path wholeA = fs::weakly_canonical(a, error);
+    const fs::path wholeA = fs::weakly_canonical(fs::absolute(a), error);
     if (error) return false;
-    const fs::path wholeB = fs::weakly_canonical(b, error);
+    const fs::path wholeB = fs::weakly_canonical(fs::absolute(b), error);
     return !error && wholeA == wholeB;
 }
 

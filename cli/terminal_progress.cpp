@@ -1,9 +1,8 @@
 #include "cli/terminal_progress.h"
+#include "cli/terminal_text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
-
-#include <cstdio>
 
 namespace lambert {
 
@@ -44,8 +43,7 @@ void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
     } else {
         line += fmt::format("{}  {:.3g}/s", done, rate);
     }
-    fmt::print(stderr, "{}\033[K", line);
-    std::fflush(stderr);
+    writeLog(line + "\033[K");
     lineShown_ = true;
 }
 
@@ -53,7 +51,7 @@ void TerminalProgress::onEnd() { clearLine(); }
 
 void TerminalProgress::clearLine() {
     const std::lock_guard lock(mutex_);
-    if (lineShown_) fmt::print(stderr, "\r\033[K");
+    if (lineShown_) writeLog("\r\033[K");
     lineShown_ = false;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 namespace lambert {
@@ -11,6 +12,11 @@ inline std::string oneLine(std::string text) {
         if (code < 0x20 || code == 0x7F) c = ' ';
     }
     return text;
+}
+
+/// Writes to stderr. Where that is closed or full the text is lost: what a run computes is worth more than its log.
+inline void writeLog(const std::string& text) {
+    if (std::fputs(text.c_str(), stderr) >= 0) std::fflush(stderr);
 }
 
 } // namespace lambert

@@ -167,6 +167,7 @@ PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector
             builder.addFaces(i, *faces);
         } else {
             ++report.undividedPolygons;
+            report.undividedArea += static_cast<double>(glm::length(areaVector(scene, polygon)));
             builder.addWhole(i);
         }
     }

@@ -66,10 +66,10 @@ std::vector<PatchEdge> frontEdges(const PatchMesh& mesh) {
     return edges;
 }
 
-/// Whether another patch at the edge rises on the front side of these two.
+/// Whether another patch at the edge rises on the front side of these two (`side` 1) or on their back (−1).
 bool somethingStandsOn(const PatchMesh& mesh, std::span<const PatchEdge> around, const PatchEdge& one,
-                       const PatchEdge& two) {
-    const glm::vec3 normal = glm::normalize(mesh.normal[one.patch] + mesh.normal[two.patch]);
+                       const PatchEdge& two, float side) {
+    const glm::vec3 normal = side * glm::normalize(mesh.normal[one.patch] + mesh.normal[two.patch]);
     const glm::vec3 foot = mesh.positions[one.key.first];
     return std::any_of(around.begin(), around.end(), [&](const PatchEdge& other) {
         if (other.patch == one.patch || other.patch == two.patch) return false;
@@ -97,10 +97,12 @@ CornerSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
                     continue;
                 const std::uint32_t backOne = mesh.lookup.backPatch(mesh.polygon[one.patch], one.patch);
                 const std::uint32_t backTwo = mesh.lookup.backPatch(mesh.polygon[two.patch], two.patch);
-                const bool open = !somethingStandsOn(mesh, around, one, two);
+                const bool openFront = !somethingStandsOn(mesh, around, one, two, 1.0F);
+                const bool openBack =
+                    backOne != kNone && backTwo != kNone && !somethingStandsOn(mesh, around, one, two, -1.0F);
                 for (const std::uint32_t vertex : {one.key.first, one.key.second}) {
-                    if (open) connect(one.patch, two.patch, vertex);
-                    if (backOne != kNone && backTwo != kNone) connect(backOne, backTwo, vertex);
+                    if (openFront) connect(one.patch, two.patch, vertex);
+                    if (openBack) connect(backOne, backTwo, vertex);
                 }
             }
         }

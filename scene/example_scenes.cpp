@@ -33,4 +33,22 @@ Scene boxScene(const glm::vec3& size, const std::array<Material, 6>& materials) 
     return quadScene(faces, materials);
 }
 
+Scene roomWithBoxScene() {
+    std::array<Material, 6> walls;
+    for (Material& wall : walls) wall = greyMaterial("wall", 0.5F);
+    walls[5] = greyMaterial("lamp", 0.5F, 1.0F);
+    Scene scene = boxScene(glm::vec3(2.0F), walls);
+    scene.materials.push_back(greyMaterial("box", 0.5F));
+    const auto addQuad = [&](const std::array<glm::vec3, 4>& quad) {
+        const auto first = static_cast<std::uint32_t>(scene.positions.size());
+        scene.positions.insert(scene.positions.end(), quad.begin(), quad.end());
+        scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
+    };
+    const std::array<glm::vec3, 4> base{{{0.83F, 0.61F, 0}, {1.37F, 0.79F, 0}, {1.19F, 1.33F, 0}, {0.65F, 1.15F, 0}}};
+    const glm::vec3 up(0.0F, 0.0F, 0.5F);
+    for (std::size_t k = 0; k < 4; ++k) addQuad({base[k], base[(k + 1) % 4], base[(k + 1) % 4] + up, base[k] + up});
+    addQuad({base[0] + up, base[1] + up, base[2] + up, base[3] + up});
+    return scene;
+}
+
 } // namespace lambert

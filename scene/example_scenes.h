@@ -17,4 +17,8 @@ Scene boxScene(const glm::vec3& size, const std::array<Material, 6>& materials);
 /// A scene with one quad per material; `quads` holds four corners for each, counter-clockwise seen from the front.
 Scene quadScene(std::span<const std::array<glm::vec3, 4>> quads, std::span<const Material> materials);
 
+/// A lit room of 2 × 2 × 2 m with a box on its floor, the box's base not aligned with the room. Materials: "wall" (five times),
+/// "lamp" (the ceiling, B_e = 1), "box"; all of reflectance 1/2.
+Scene roomWithBoxScene();
+
 } // namespace lambert

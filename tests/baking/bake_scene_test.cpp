@@ -23,26 +23,6 @@ BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
     return bakeScene(scene, options, progress);
 }
 
-/// A lit room 2 × 2 × 2 with a box on its floor, whose base is not aligned with the floor's patches.
-Scene roomWithBox() {
-    std::array<Material, 6> walls;
-    for (Material& wall : walls) wall = greyMaterial("wall", 0.5F);
-    walls[5] = greyMaterial("lamp", 0.5F, 1.0F);
-    Scene scene = boxScene(glm::vec3(2.0F), walls);
-    const std::array<glm::vec3, 4> base{{{0.83F, 0.61F, 0}, {1.37F, 0.79F, 0}, {1.19F, 1.33F, 0}, {0.65F, 1.15F, 0}}};
-    scene.materials.push_back(greyMaterial("box", 0.5F));
-    const auto addQuad = [&](const Quad& quad) {
-        const auto first = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.insert(scene.positions.end(), quad.begin(), quad.end());
-        scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
-    };
-    const glm::vec3 up(0, 0, 0.5F);
-    for (std::size_t k = 0; k < 4; ++k)
-        addQuad({base[k], base[(k + 1) % 4], base[(k + 1) % 4] + up, base[k] + up});
-    addQuad({base[0] + up, base[1] + up, base[2] + up, base[3] + up});
-    return scene;
-}
-
 TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {
     const Material wall = greyMaterial("wall", 0.5F, 1.0F);
     const BakedScene baked = bake(boxScene({2, 1.5F, 1}, {wall, wall, wall, wall, wall, wall}), 300, 32);
@@ -52,7 +32,7 @@ TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {
 }
 
 TEST(BakeScene, FacesOfTheBakedMeshAreThePatches) {
-    const BakedScene baked = bake(roomWithBox(), 400, 16);
+    const BakedScene baked = bake(roomWithBoxScene(), 400, 16);
     ASSERT_EQ(baked.baked.faces.size(), baked.mesh.size());
     for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
         EXPECT_EQ(baked.baked.isQuad(i), baked.mesh.isQuad(i));
@@ -68,7 +48,7 @@ TEST(BakeScene, VerticesAreSplitAtCreases) {
 }
 
 TEST(BakeScene, DarknessUnderAnObjectDoesNotReachTheFloorAroundIt) {
-    const BakedScene baked = bake(roomWithBox(), 1500, 64);
+    const BakedScene baked = bake(roomWithBoxScene(), 1500, 64);
     const BakedMesh& mesh = baked.baked;
     std::size_t contactVertices = 0;
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -88,18 +68,18 @@ TEST(BakeScene, DarknessUnderAnObjectDoesNotReachTheFloorAroundIt) {
 }
 
 TEST(BakeScene, WarnsAndNamesTheMaterialWhereLightMeetsBacks) {
-    Scene scene = roomWithBox();
+    Scene scene = roomWithBoxScene();
     for (Polygon& polygon : scene.polygons)
         if (polygon.material == 6) std::swap(polygon.vertices[1], polygon.vertices[3]);
     const BakedScene baked = bake(scene, 400, 32);
     ASSERT_EQ(baked.warnings.size(), 1U);
     EXPECT_NE(baked.warnings[0].find("\"box\""), std::string::npos) << baked.warnings[0];
     EXPECT_NE(baked.warnings[0].find("--two-sided"), std::string::npos);
-    EXPECT_TRUE(bake(roomWithBox(), 400, 32).warnings.empty());
+    EXPECT_TRUE(bake(roomWithBoxScene(), 400, 32).warnings.empty());
 }
 
 TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
-    Scene scene = roomWithBox();
+    Scene scene = roomWithBoxScene();
     scene.polygons.resize(6);
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
     for (const glm::vec3 p : {glm::vec3(0.5F, 0.5F, 1), glm::vec3(1.5F, 0.5F, 1), glm::vec3(1.5F, 1.5F, 1), glm::vec3(0.5F, 1.5F, 1)})
@@ -129,7 +109,7 @@ TEST(BakeScene, ASceneWithoutLightNamesTheOption) {
 }
 
 TEST(BakeScene, EnergyImbalanceOfRawRowsIsSmallAt1000Patches) {
-    const BakedScene baked = bake(roomWithBox(), 1000, 64);
+    const BakedScene baked = bake(roomWithBoxScene(), 1000, 64);
     EXPECT_LE(std::abs(baked.solution.energy.imbalance()), 5e-3); // reciprocity is not enforced
 }
 

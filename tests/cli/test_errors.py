@@ -71,7 +71,7 @@ class WrongOptions(ErrorTest):
 
     def test_materials_that_are_not_there_or_badly_written(self):
         for option in ("--emit", "--reflectance"):
-            self.assert_refused(option, "nothing=1,1,1", says='"nothing"')
+            self.assert_refused(option, "nothing=.5,.5,.5", says='"nothing"')
             for value in ("light", "light=", "light=1,1", "light=1,1,1,1", "light=a,b,c", "light=1,1,-1", "light=nan,0,0"):
                 self.assert_refused(option, value, says=option)
         self.assert_refused("--reflectance", "light=1,1,1", says="0.99")
@@ -174,7 +174,7 @@ class WrongTargets(ErrorTest):
             self.assert_fails(USAGE, "probe", "box.obj", "p.csv", "-o", target, *TINY, says="overwrite")
 
     def test_write_that_fails_leaves_no_temporary(self):
-        # The check before the work passes; then the name is taken by a folder's worth of characters: too long to open.
+        # Names end at 255 bytes: this one can be checked before the work, but a temporary one beside it not be made.
         name = "x" * 248 + ".glb"
         self.assert_target_refused(SYSTEM, "-o", name)
 

@@ -101,7 +101,7 @@ Scene roomWithTurnedBox() {
     for (Polygon& polygon : scene.polygons)
         if (polygon.node == scene.nodes.size() - 1)
             std::reverse(polygon.vertices.begin(), polygon.vertices.end());
-    return scene;
+    return prepareScene(scene);
 }
 
 std::vector<glm::vec2> randomConvexQuad(std::uint32_t seed) {

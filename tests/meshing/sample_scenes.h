@@ -37,7 +37,7 @@ void addBox(Scene& scene, const glm::vec3& lower, const glm::vec3& upper, bool w
 void addPolygon(Scene& scene, std::span<const glm::vec3> corners);
 Scene emptyScene();
 
-/// A closed room with a box on its floor that is turned against the walls.
+/// A closed room with a box on its floor that is turned against the walls; prepared.
 Scene roomWithTurnedBox();
 
 /// A convex quad with corners at random angles on a random ellipse.
