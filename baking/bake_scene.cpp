@@ -15,6 +15,9 @@ namespace {
 /// Bounds the first look at a large scene: a few minutes on two cores.
 constexpr double kMostRays = 1.3e9;
 constexpr double kBackFaceWarning = 0.01;
+/// A patch that sees more backs than this is inside something. (Not all backs: where solids touch, a ray may slip from the
+/// inside of one into the other.)
+constexpr double kInside = 0.8;
 constexpr double kUndividedWarning = 1e-3; ///< of the area
 
 class Stopwatch {
@@ -35,7 +38,8 @@ void requireLight(const Scene& scene) {
     const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
         return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
     });
-    if (!lit) throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
+    if (!lit)
+        throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
 }
 
 /// Entries per row at a resolution, from rows of a few patches spread over the mesh.
@@ -59,9 +63,9 @@ int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t
     for (int resolution = 128; resolution >= 16; resolution -= 8) {
         chosen = resolution;
         if (3.0 * resolution * resolution * count > kMostRays) continue;
-        const double bytes = count * (static_cast<double>(sizeof(FormFactorRow)) +
-                                      static_cast<double>(sizeof(FormFactor)) *
-                                          pilotEntriesPerRow(mesh, rays, resolution));
+        const double bytes =
+            count * (static_cast<double>(sizeof(FormFactorRow)) +
+                     static_cast<double>(sizeof(FormFactor)) * pilotEntriesPerRow(mesh, rays, resolution));
         if (bytes <= static_cast<double>(memoryLimit)) break;
     }
     return chosen;
@@ -73,7 +77,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
         const double back = matrix.rows[patch].back;
-        return back < 1.0 - 1e-6 ? static_cast<double>(mesh.area[patch]) * back : 0.0;
+        return back < kInside ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
     patches.resize(std::min<std::size_t>(patches.size(), 200));
@@ -91,7 +95,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
                     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
                         const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
-                        if (!scene.materials[material].twoSided)
+                        if (scene.polygons[packet.polygon[lane]].backMaterial == kNone)
                             met[material] += static_cast<double>(mesh.area[patch]);
                     }
                 }
@@ -109,7 +113,7 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const FormFactorRow& row = matrix.rows[i];
         quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
-        if (row.back > 1.0 - 1e-6) continue; // inside something: nothing can reach it anyway
+        if (row.back >= kInside) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
         backArea += static_cast<double>(mesh.area[i]) * row.back;
     }
@@ -123,9 +127,10 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
 void collectWarnings(BakedScene& result) {
     const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
     if (result.rows.backFaceFraction > kBackFaceWarning)
-        warn(fmt::format("{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
-                         "or make surfaces two-sided with --two-sided",
-                         100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
+        warn(fmt::format(
+            "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
+            "or make surfaces two-sided with --two-sided",
+            100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
     const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);
     if (result.meshReport.undividedArea > kUndividedWarning * area)
@@ -141,7 +146,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     Stopwatch watch;
     const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
     progress.begin("mesh", 0);
-    result.scene = std::make_shared<Scene>(prepareScene(scene, {.joinTriangles = !keepPolygons}, &result.prepareReport));
+    result.scene = std::make_shared<Scene>(
+        prepareScene(scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons}, &result.prepareReport));
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
@@ -160,8 +166,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.seconds.solve = watch.lap();
 
     progress.begin("bake", 0);
-    result.baked = reconstructAverage(result.mesh, *result.scene, result.solution, options.reconstruction,
-                                      &result.separatedFaces);
+    result.baked =
+        reconstructAverage(result.mesh, *result.scene, result.solution, options.reconstruction, &result.separatedFaces);
     progress.end();
     result.seconds.bake = watch.lap();
     collectWarnings(result);

@@ -14,8 +14,7 @@ std::string encodeGltf(const BakedMesh& mesh, const BakeOutputOptions& options, 
 std::string encodePly(const BakedMesh& mesh, const BakeOutputOptions& options);
 
 /// `materialFile` is the name of the file with encodeMtl's content.
-std::string encodeObj(const BakedMesh& mesh, const BakeOutputOptions& options,
-                      const std::string& materialFile);
+std::string encodeObj(const BakedMesh& mesh, const BakeOutputOptions& options, const std::string& materialFile);
 std::string encodeMtl(const BakedMesh& mesh);
 
 /// "radiosity" or "irradiance".

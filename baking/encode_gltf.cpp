@@ -48,8 +48,7 @@ void requireFits(std::uint64_t bytes) {
 
 /// Splits a quad along the diagonal over which the shown light changes less; the shorter one where both are
 /// equal.
-bool splitsAlongFirstDiagonal(const BakedMesh& mesh, const std::array<std::uint32_t, 4>& quad,
-                              Quantity quantity) {
+bool splitsAlongFirstDiagonal(const BakedMesh& mesh, const std::array<std::uint32_t, 4>& quad, Quantity quantity) {
     const auto change = [&](std::size_t a, std::size_t b) {
         const Rgb d = shownRadiance(mesh, quad[a], quantity) - shownRadiance(mesh, quad[b], quantity);
         return glm::dot(d, d);
@@ -92,8 +91,7 @@ public:
         tinygltf::Mesh mesh;
         const std::vector<std::vector<Triangle>> triangles = trianglesByMaterial(mesh_, options_.quantity);
         for (std::uint32_t material = 0; material < triangles.size(); ++material)
-            if (!triangles[material].empty())
-                mesh.primitives.push_back(primitive(triangles[material], material));
+            if (!triangles[material].empty()) mesh.primitives.push_back(primitive(triangles[material], material));
         if (!mesh.primitives.empty()) addScene(std::move(mesh));
         return std::move(model_);
     }
@@ -146,8 +144,7 @@ private:
         model_.bufferViews.push_back(std::move(view));
         tinygltf::Accessor accessor;
         accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
-        accessor.componentType =
-            indices ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT : TINYGLTF_COMPONENT_TYPE_FLOAT;
+        accessor.componentType = indices ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT : TINYGLTF_COMPONENT_TYPE_FLOAT;
         accessor.type = indices ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
         accessor.count = count;
         model_.accessors.push_back(std::move(accessor));
@@ -207,8 +204,7 @@ private:
         });
         result.attributes["_RADIOSITY"] = addAttribute(vertices, [&](auto v) { return mesh_.radiosity[v]; });
         if (options_.quantity == Quantity::Irradiance)
-            result.attributes["_IRRADIANCE"] =
-                addAttribute(vertices, [&](auto v) { return mesh_.irradiance[v]; });
+            result.attributes["_IRRADIANCE"] = addAttribute(vertices, [&](auto v) { return mesh_.irradiance[v]; });
 
         const std::size_t begin = bytes_.size();
         ByteWriter out(bytes_);

@@ -53,8 +53,7 @@ void appendFaces(const BakedMesh& mesh, std::string& text) {
 
 } // namespace
 
-std::string encodeObj(const BakedMesh& mesh, const BakeOutputOptions& options,
-                      const std::string& materialFile) {
+std::string encodeObj(const BakedMesh& mesh, const BakeOutputOptions& options, const std::string& materialFile) {
     std::string text = fmt::format("# Lambert {}\n"
                                    "# metres; v x y z r g b: r g b = sRGB of clamp({}/pi * 2^exposure_ev)\n"
                                    "# quantity {}\n"
@@ -73,8 +72,7 @@ std::string encodeMtl(const BakedMesh& mesh) {
     std::set<std::string> written;
     for (const std::uint32_t material : used) {
         const std::string name = objName(mesh, material);
-        if (written.insert(name).second)
-            text += fmt::format("newmtl {}\nKd 1 1 1\nKa 0 0 0\nillum 0\n", name);
+        if (written.insert(name).second) text += fmt::format("newmtl {}\nKd 1 1 1\nKa 0 0 0\nillum 0\n", name);
     }
     return text;
 }

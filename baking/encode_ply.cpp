@@ -22,23 +22,18 @@ std::string header(const BakedMesh& mesh, const BakeOutputOptions& options) {
                    "comment exposure_ev {}\n"
                    "comment radiosity_r g b: B per m2, linear, Rec. 709\n"
                    "element vertex {}\n",
-                   options.version, options.quantity == Quantity::Radiosity ? "B" : "E",
-                   options.exposure + 0.0F, mesh.positions.size());
-    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"})
-        fmt::format_to(out, "property float {}\n", name);
+                   options.version, options.quantity == Quantity::Radiosity ? "B" : "E", options.exposure + 0.0F,
+                   mesh.positions.size());
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) fmt::format_to(out, "property float {}\n", name);
     for (const char* name : {"red", "green", "blue"}) fmt::format_to(out, "property uchar {}\n", name);
     for (const char channel : {'r', 'g', 'b'}) fmt::format_to(out, "property float radiosity_{}\n", channel);
     if (options.quantity == Quantity::Irradiance)
-        for (const char channel : {'r', 'g', 'b'})
-            fmt::format_to(out, "property float irradiance_{}\n", channel);
-    fmt::format_to(out, "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-                   mesh.faces.size());
+        for (const char channel : {'r', 'g', 'b'}) fmt::format_to(out, "property float irradiance_{}\n", channel);
+    fmt::format_to(out, "element face {}\nproperty list uchar uint vertex_indices\nend_header\n", mesh.faces.size());
     return text;
 }
 
-std::uint8_t srgbByte(float linear) {
-    return static_cast<std::uint8_t>(std::lround(255.0F * srgbEncode(linear)));
-}
+std::uint8_t srgbByte(float linear) { return static_cast<std::uint8_t>(std::lround(255.0F * srgbEncode(linear))); }
 
 } // namespace
 

@@ -29,8 +29,7 @@ double faceArea(const BakedMesh& mesh, std::size_t face) {
 double faceValue(const BakedMesh& mesh, std::size_t face, Quantity quantity) {
     const std::size_t count = mesh.isQuad(face) ? 4 : 3;
     glm::dvec3 sum(0.0);
-    for (std::size_t k = 0; k < count; ++k)
-        sum += glm::dvec3(shownRadiance(mesh, mesh.faces[face][k], quantity));
+    for (std::size_t k = 0; k < count; ++k) sum += glm::dvec3(shownRadiance(mesh, mesh.faces[face][k], quantity));
     return std::max({sum.x, sum.y, sum.z}) / static_cast<double>(count);
 }
 
@@ -46,8 +45,7 @@ Histogram collect(const BakedMesh& mesh, Quantity quantity, bool withEmitters) {
         if (!withEmitters && isEmitter(mesh, face)) continue;
         const double area = faceArea(mesh, face);
         histogram.area += area;
-        if (const double value = faceValue(mesh, face, quantity); value > 0.0)
-            histogram.lit.push_back({value, area});
+        if (const double value = faceValue(mesh, face, quantity); value > 0.0) histogram.lit.push_back({value, area});
     }
     std::stable_sort(histogram.lit.begin(), histogram.lit.end(),
                      [](const FaceValue& a, const FaceValue& b) { return a.value < b.value; });

@@ -52,13 +52,11 @@ InterpolationWeights quadWeights(const std::array<glm::dvec3, 4>& corners, const
 
 } // namespace
 
-InterpolationWeights interpolationWeights(const PatchMesh& mesh, std::uint32_t patch,
-                                          const glm::vec3& point) {
+InterpolationWeights interpolationWeights(const PatchMesh& mesh, std::uint32_t patch, const glm::vec3& point) {
     std::array<glm::dvec3, 4> corners{};
     for (int k = 0; k < mesh.cornerCount(patch); ++k)
         corners[static_cast<std::size_t>(k)] = glm::dvec3(mesh.position(patch, k));
-    return mesh.isQuad(patch) ? quadWeights(corners, glm::dvec3(point))
-                              : triangleWeights(corners, glm::dvec3(point));
+    return mesh.isQuad(patch) ? quadWeights(corners, glm::dvec3(point)) : triangleWeights(corners, glm::dvec3(point));
 }
 
 } // namespace lambert

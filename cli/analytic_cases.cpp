@@ -26,7 +26,8 @@ void furnace(Results& results, Progress& progress) {
     BakeOptions options;
     options.mesh.patches = 1000;
     options.jacobi.tolerance = 1e-7;
-    const BakedScene baked = bakeScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
+    const BakedScene baked =
+        bakeScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
     double lowest = 1e30;
     double highest = 0.0;
     for (const RgbSum& b : baked.solution.radiosity) {

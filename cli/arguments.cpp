@@ -24,8 +24,7 @@ CLI::Validator between(double lowest, double highest) {
     return {[=](const std::string& text) {
                 double value = 0.0;
                 if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
-                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest,
-                                       highest);
+                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest, highest);
                 return std::string();
             },
             "", ""};
@@ -48,8 +47,9 @@ void addSceneArguments(CLI::App& command, SceneArguments& a) {
 }
 
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
-    auto* length =
-        command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")->type_name("METRES")->group("Mesh");
+    auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
+                       ->type_name("METRES")
+                       ->group("Mesh");
     command
         .add_option("--patches", a.patches,
                     "About so many patches; 0 keeps the input's polygons [theirs and a quarter or 5000 more]")
@@ -57,7 +57,9 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->check(between(0.0, 2e8))
         ->excludes(length)
         ->group("Mesh");
-    command.add_flag("--whole-contacts", a.wholeContacts, "Do not divide surfaces along the outlines of what stands on them")
+    command
+        .add_flag("--whole-contacts", a.wholeContacts,
+                  "Do not divide surfaces along the outlines of what stands on them")
         ->group("Mesh");
     command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
         ->type_name("DEGREES")
@@ -118,7 +120,10 @@ void addPictureArguments(CLI::App& command, PictureArguments& a) {
         command.add_option("--look-at", a.lookAt, "What it looks at")->type_name("x,y,z")->needs(eye)->group("Picture");
     eye->needs(lookAt);
     command.add_option("--up", a.up, "[0,1,0]")->type_name("x,y,z")->needs(eye)->group("Picture");
-    command.add_option("--fov", a.fov, "Vertical field of view [45]")->type_name("DEGREES")->needs(eye)->group("Picture");
+    command.add_option("--fov", a.fov, "Vertical field of view [45]")
+        ->type_name("DEGREES")
+        ->needs(eye)
+        ->group("Picture");
     command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
         ->check(between(1, 64))
         ->group("Picture");
@@ -142,7 +147,7 @@ namespace {
 
 /// Materials named on the command line, with their values.
 void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, const std::string& option, float largest,
-              const std::function<void(Material&, const Rgb&)>& apply) {
+                       const std::function<void(Material&, const Rgb&)>& apply) {
     for (const std::string& setting : settings) {
         const std::size_t separator = setting.rfind('=');
         if (separator == std::string::npos)
@@ -150,7 +155,8 @@ void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, c
         const std::string name = setting.substr(0, separator);
         const Rgb value = parseVector(setting.substr(separator + 1), option);
         if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
-            throw UsageError(fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
+            throw UsageError(
+                fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
         bool found = false;
         for (Material& material : scene.materials) {
             if (material.name != name) continue;
@@ -160,8 +166,8 @@ void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, c
         if (!found) {
             std::vector<std::string> names;
             for (const Material& material : scene.materials) names.push_back(material.name);
-            throw UsageError(fmt::format("{}: the scene has no material \"{}\", but {}", option, name,
-                                         fmt::join(names, ", ")));
+            throw UsageError(
+                fmt::format("{}: the scene has no material \"{}\", but {}", option, name, fmt::join(names, ", ")));
         }
     }
 }
@@ -172,9 +178,10 @@ ReadResult readScene(const SceneArguments& a) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
     ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
-    overrideMaterials(result.scene, a.emit, "--emit", 1e30F, [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
+    overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
+                      [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
     overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,
-             [](Material& m, const Rgb& value) { m.reflectance = value; });
+                      [](Material& m, const Rgb& value) { m.reflectance = value; });
     return result;
 }
 

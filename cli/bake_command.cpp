@@ -40,9 +40,7 @@ struct Output {
 
 class Clock {
 public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -53,8 +51,8 @@ std::vector<Output> outputs(const BakeArguments& a) {
     for (const auto& path : a.outputs) {
         const auto format = formatOf(a.format.empty() ? path : std::filesystem::path("x." + a.format));
         if (!format)
-            throw UsageError(fmt::format("-o: found \"{}\", allowed are names ending in .glb, .gltf, .ply or .obj, or --format",
-                                         path.string()));
+            throw UsageError(fmt::format(
+                "-o: found \"{}\", allowed are names ending in .glb, .gltf, .ply or .obj, or --format", path.string()));
         result.push_back({path, *format});
     }
     return result;
@@ -106,8 +104,8 @@ void printSummary(const BakedScene& baked, float exposure, double seconds) {
         fmt::print("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
                    light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
     fmt::print("{} patches, {} bounces, residual {:.2g}, energy imbalance {:.2g}, exposure {:.2f} EV, {:.1f} s\n",
-               baked.mesh.size(), baked.solution.iterations, baked.solution.residual,
-               baked.solution.energy.imbalance(), exposure, seconds);
+               baked.mesh.size(), baked.solution.iterations, baked.solution.residual, baked.solution.energy.imbalance(),
+               exposure, seconds);
 }
 
 ExitCode bake(const BakeArguments& a) {
@@ -133,9 +131,9 @@ ExitCode bake(const BakeArguments& a) {
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
-    logLine(a.run, fmt::format("{} patches, hemicubes {}: {:.3g} rays in {:.1f} s, {} bounces to {:.1e}", baked.mesh.size(),
-                               baked.resolution, static_cast<double>(baked.rayCount), baked.seconds.formFactors,
-                               baked.solution.iterations, baked.solution.residual));
+    logLine(a.run, fmt::format("{} patches, hemicubes {}: {:.3g} rays in {:.1f} s, {} bounces to {:.1e}",
+                               baked.mesh.size(), baked.resolution, static_cast<double>(baked.rayCount),
+                               baked.seconds.formFactors, baked.solution.iterations, baked.solution.residual));
 
     const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
     const Clock writing;
@@ -179,7 +177,9 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
     command.add_option("--quantity", arguments->quantity, "What the colours show: radiosity or irradiance [radiosity]")
         ->check(CLI::IsMember({"radiosity", "irradiance"}))
         ->group("Bake");
-    command.add_option("--exposure", arguments->exposure, "EV, display = value · 2^EV; auto: 99 % of all is below 0.9 [auto]")
+    command
+        .add_option("--exposure", arguments->exposure,
+                    "EV, display = value · 2^EV; auto: 99 % of all is below 0.9 [auto]")
         ->type_name("EV")
         ->group("Bake");
     addTransportArguments(command, arguments->transport);

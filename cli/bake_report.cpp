@@ -49,6 +49,8 @@ Json inputJson(const BakeReportInput& in) {
             {"degenerate", in.read.degeneratePolygons},
             {"split", in.read.splitPolygons},
             {"collapsed", in.baked.prepareReport.collapsedPolygons},
+            {"duplicates", in.baked.prepareReport.duplicatePolygons},
+            {"merged_sheets", in.baked.prepareReport.mergedSheets},
             {"joined_pairs", in.baked.prepareReport.joinedPairs}};
 }
 
@@ -71,7 +73,8 @@ std::vector<MaterialLight> materialLight(const BakedScene& baked) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         MaterialLight& light = lights[mesh.material[i]];
         const auto area = static_cast<double>(mesh.area[i]);
-        if (!mesh.isBack(i)) light.area += area;
+        // A second side of the same material is no second face.
+        if (!mesh.isBack(i) || baked.scene->polygons[mesh.polygon[i]].material != mesh.material[i]) light.area += area;
         light.meanIrradiance += area * baked.solution.irradiance[i];
         light.meanRadiosity += area * baked.solution.radiosity[i];
     }
@@ -110,16 +113,13 @@ Json bakeReport(const BakeReportInput& in) {
                               {"bytes", baked.rows.bytes},
                               {"largest_closure_error", baked.rows.largestClosureError},
                               {"back_face_fraction", baked.rows.backFaceFraction}};
-    report["seconds"] = {{"read", in.readSeconds},
-                         {"mesh", baked.seconds.mesh},
-                         {"form_factors", baked.seconds.formFactors},
-                         {"solve", baked.seconds.solve},
-                         {"bake", baked.seconds.bake},
-                         {"write", in.writeSeconds},
-                         {"total", in.totalSeconds}};
-    report["energy"] = {{"emitted", jsonVector(energy.emitted)},     {"received", jsonVector(energy.received)},
-                        {"absorbed", jsonVector(energy.absorbed)},   {"back_faces", jsonVector(energy.backFaces)},
-                        {"escaped", jsonVector(energy.escaped)},     {"imbalance", energy.imbalance()}};
+    report["seconds"] = {
+        {"read", in.readSeconds},       {"mesh", baked.seconds.mesh}, {"form_factors", baked.seconds.formFactors},
+        {"solve", baked.seconds.solve}, {"bake", baked.seconds.bake}, {"write", in.writeSeconds},
+        {"total", in.totalSeconds}};
+    report["energy"] = {{"emitted", jsonVector(energy.emitted)},   {"received", jsonVector(energy.received)},
+                        {"absorbed", jsonVector(energy.absorbed)}, {"back_faces", jsonVector(energy.backFaces)},
+                        {"escaped", jsonVector(energy.escaped)},   {"imbalance", energy.imbalance()}};
     Json materials = Json::array();
     for (const MaterialLight& light : materialLight(baked))
         materials.push_back({{"name", light.name},

@@ -42,8 +42,8 @@ struct SceneFacts {
 bool isSliver(const Scene& scene, const Polygon& polygon) {
     float longest = 0.0F;
     for (int k = 0; k < polygon.size(); ++k)
-        longest = std::max(longest, glm::distance(corner(scene, polygon, k),
-                                                  corner(scene, polygon, (k + 1) % polygon.size())));
+        longest = std::max(longest,
+                           glm::distance(corner(scene, polygon, k), corner(scene, polygon, (k + 1) % polygon.size())));
     return 2.0F * glm::length(areaVector(scene, polygon)) < 1e-4F * longest * longest;
 }
 
@@ -75,19 +75,22 @@ void print(const InfoArguments& a, const ReadResult& read, const SceneFacts& fac
                facts.bounds.lower.x, facts.bounds.lower.y, facts.bounds.lower.z);
     if (std::max({size.x, size.y, size.z}) > 200.0F && !a.scene.unit)
         fmt::print("            large for a room: if the file is in millimetres, use --unit 0.001\n");
-    fmt::print("polygons    {} triangles, {} quads, {:.5g} m²; {} in the file\n", facts.triangles, facts.quads, facts.area,
-               report.inputPolygons);
+    fmt::print("polygons    {} triangles, {} quads, {:.5g} m²; {} in the file\n", facts.triangles, facts.quads,
+               facts.area, report.inputPolygons);
     fmt::print("dropped     {} non-finite, {} degenerate, {} less high than {:.2g} m (2e-6 of the diagonal)\n",
                report.nonFinitePolygons, report.degeneratePolygons, facts.prepared.collapsedPolygons,
                2.0F * weldTolerance(scene));
     fmt::print("changed     {} polygons split, {} vertices welded, {} triangle pairs joined\n", report.splitPolygons,
                facts.prepared.weldedVertices, facts.prepared.joinedPairs);
+    fmt::print("coincident  {} duplicates (left out), {} back to back (two sides of one polygon)\n",
+               facts.prepared.duplicatePolygons, facts.prepared.mergedSheets);
     fmt::print("slivers     {} polygons less high than 1/10000 of their longest edge\n", facts.slivers);
-    fmt::print("emitted     {:.5g} {:.5g} {:.5g} (r g b, W or lm){}\n", facts.emitted.x, facts.emitted.y, facts.emitted.z,
-               facts.emitted == RgbSum(0.0) ? ": no light; give one with --emit MATERIAL=r,g,b" : "");
+    fmt::print("emitted     {:.5g} {:.5g} {:.5g} (r g b, W or lm){}\n", facts.emitted.x, facts.emitted.y,
+               facts.emitted.z, facts.emitted == RgbSum(0.0) ? ": no light; give one with --emit MATERIAL=r,g,b" : "");
     for (const Camera& camera : scene.cameras)
-        fmt::print("camera      {}: eye ({:.4g}, {:.4g}, {:.4g}), {:.1f}° vertically\n", oneLine(camera.name), camera.eye.x,
-                   camera.eye.y, camera.eye.z, static_cast<double>(camera.verticalFov) * 180.0 / std::numbers::pi);
+        fmt::print("camera      {}: eye ({:.4g}, {:.4g}, {:.4g}), {:.1f}° vertically\n", oneLine(camera.name),
+                   camera.eye.x, camera.eye.y, camera.eye.z,
+                   static_cast<double>(camera.verticalFov) * 180.0 / std::numbers::pi);
     fmt::print("\n{:<24} {:>9} {:>10}  {:<20} {:<20} sides\n", "material", "polygons", "area m²", "reflectance",
                "emitted radiance");
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -116,6 +119,8 @@ Json infoReport(const InfoArguments& a, const ReadResult& read, const SceneFacts
                        {"collapsed", facts.prepared.collapsedPolygons},
                        {"joined_pairs", facts.prepared.joinedPairs},
                        {"welded_vertices", facts.prepared.weldedVertices},
+                       {"duplicates", facts.prepared.duplicatePolygons},
+                       {"merged_sheets", facts.prepared.mergedSheets},
                        {"slivers", facts.slivers}};
     report["materials"] = Json::array();
     for (std::size_t m = 0; m < read.scene.materials.size(); ++m) {

@@ -38,6 +38,11 @@ int run(int argc, char** argv) {
         program.parse(argc, argv);
     } catch (const CLI::Success& help) {
         return finish(static_cast<ExitCode>(program.exit(help)));
+    } catch (const CLI::RequiredError& error) {
+        if (program.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
+            return fail(ExitCode::Usage,
+                        fmt::format("no command \"{}\": there are bake, probe, info and verify", argv[1]));
+        return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
     } catch (const CLI::ParseError& error) {
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
     }

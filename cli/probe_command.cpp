@@ -55,7 +55,8 @@ std::vector<float> leadingNumbers(std::string_view line) {
 ProbePoint toPoint(const std::vector<float>& n, const std::string& place) {
     const ProbePoint point{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     const float length = glm::length(point.normal);
-    if (!std::isfinite(point.position.x + point.position.y + point.position.z) || !std::isfinite(length) || length == 0.0F)
+    if (!std::isfinite(point.position.x + point.position.y + point.position.z) || !std::isfinite(length) ||
+        length == 0.0F)
         throw InputError(fmt::format("{}: found a point that is not finite or a normal without length", place));
     return point;
 }
@@ -74,8 +75,8 @@ std::vector<ProbePoint> readPoints(const std::filesystem::path& path) {
         if (numbers.size() == 6)
             points.push_back(toPoint(numbers, place));
         else if (!headerAllowed || !numbers.empty())
-            throw InputError(fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place,
-                                         oneLine(line.substr(0, 60))));
+            throw InputError(
+                fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place, oneLine(line.substr(0, 60))));
         headerAllowed = false;
     }
     if (points.empty()) throw InputError(fmt::format("{}: holds no points", path.string()));
@@ -88,8 +89,8 @@ std::string table(const std::vector<ProbePoint>& points, const std::vector<Probe
         const auto& [p, n] = points[i];
         const RgbSum& e = readings[i].irradiance;
         const RgbSum& s = readings[i].standardError;
-        text += fmt::format("{},{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}\n", p.x, p.y, p.z, n.x, n.y, n.z,
-                            e.x, e.y, e.z, s.x, s.y, s.z);
+        text += fmt::format("{},{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}\n", p.x, p.y, p.z, n.x, n.y,
+                            n.z, e.x, e.y, e.z, s.x, s.y, s.z);
     }
     return text;
 }

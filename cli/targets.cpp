@@ -56,8 +56,8 @@ void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> i
         requireWritable(targets[i]);
         std::error_code ignored;
         if (fs::exists(targets[i], ignored) && !fs::is_regular_file(targets[i], ignored))
-            throw SystemError(fmt::format("{}: cannot write: a device or pipe cannot be replaced by a file",
-                                          targets[i].string()));
+            throw SystemError(
+                fmt::format("{}: cannot write: a device or pipe cannot be replaced by a file", targets[i].string()));
     }
 }
 

@@ -12,7 +12,6 @@ std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& sce
 
 /// To be called before any work. Throws UsageError if a target is one of the inputs or is named twice,
 /// SystemError if it cannot be written. Empty paths are skipped.
-void checkTargets(std::span<const std::filesystem::path> targets,
-                  std::span<const std::filesystem::path> inputs);
+void checkTargets(std::span<const std::filesystem::path> targets, std::span<const std::filesystem::path> inputs);
 
 } // namespace lambert

@@ -42,7 +42,8 @@ ExitCode verify(const RunArguments& run) {
 
 void addVerifyCommand(CLI::App& program, CommandRun& run) {
     auto arguments = std::make_shared<RunArguments>();
-    CLI::App& command = *program.add_subcommand("verify", "Computes cases with known answers: expected, found, tolerance");
+    CLI::App& command =
+        *program.add_subcommand("verify", "Computes cases with known answers: expected, found, tolerance");
     addRunArguments(command, *arguments);
     command.callback([arguments, &run] { run = [arguments] { return verify(*arguments); }; });
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #ifndef LAMBERT_STD_THREADS
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -27,12 +29,19 @@ int threadCount() {
     return configured > 0 ? configured : processorCount();
 }
 
-void setThreadCount(int count) { configuredThreads = count; }
-
 #ifndef LAMBERT_STD_THREADS
 
-void parallelFor(std::size_t count, std::size_t grain,
-                 const std::function<void(std::size_t, std::size_t, int)>& body) {
+void setThreadCount(int count) {
+    configuredThreads = count;
+    // More threads than processors are to be had only by raising oneTBB's own limit.
+    static std::unique_ptr<tbb::global_control> limit;
+    limit.reset();
+    if (count > processorCount())
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(count));
+}
+
+void parallelFor(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t, int)>& body) {
     if (count == 0) return;
     tbb::task_arena arena(threadCount());
     arena.execute([&] {
@@ -47,8 +56,9 @@ void parallelFor(std::size_t count, std::size_t grain,
 
 #else
 
-void parallelFor(std::size_t count, std::size_t grain,
-                 const std::function<void(std::size_t, std::size_t, int)>& body) {
+void setThreadCount(int count) { configuredThreads = count; }
+
+void parallelFor(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t, int)>& body) {
     if (count == 0) return;
     grain = std::max<std::size_t>(1, grain);
     std::atomic<std::size_t> next{0};

@@ -21,14 +21,13 @@ namespace {
 }
 
 fs::path temporaryName(const fs::path& path) {
-    // The extension stays last: image libraries choose the format by it.
-    fs::path name = path.stem();
-    name += fmt::format(".{}.tmp", ::getpid());
+    // Short, as the target's own name may be as long as a name can be. The extension stays last: image libraries choose
+    // the format by it.
+    fs::path name = fmt::format(".lambert-{}.tmp", ::getpid());
     name += path.extension();
     return path.parent_path() / name;
 }
 
-/// `path` is the name that messages speak of.
 void flushToDisk(const fs::path& temporary, const fs::path& path) {
     const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) fail(path, errno);
@@ -69,6 +68,7 @@ void requireWritable(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(path, error)) fail(path, EISDIR);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) fail(path, ENOTDIR);
     if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(path, errno);
 }
 

@@ -12,7 +12,9 @@ namespace lambert {
 class RowAccumulator {
 public:
     explicit RowAccumulator(std::size_t patchCount)
-        : back_(static_cast<std::uint32_t>(patchCount)), sums_(patchCount + 2, 0.0), touched_((patchCount + 2 + 63) / 64, 0) {}
+        : back_(static_cast<std::uint32_t>(patchCount)),
+          sums_(patchCount + 2, 0.0),
+          touched_((patchCount + 2 + 63) / 64, 0) {}
 
     /// Adds to a target: a patch, or one of the two below.
     void add(std::uint32_t target, double value) {

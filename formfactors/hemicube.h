@@ -10,9 +10,9 @@
 namespace lambert {
 
 struct HemicubeOptions {
-    int resolution = 128;      //!< pixels along an edge of the top face; even, 16 to 4096
+    int resolution = 128;       //!< pixels along an edge of the top face; even, 16 to 4096
     bool randomRotation = true; //!< turns each patch's hemicube about its normal by an angle of its own
-    std::uint64_t seed = 1;    //!< of the angles
+    std::uint64_t seed = 1;     //!< of the angles
 };
 
 /// Form factors from the centre of each patch through the pixels of a half cube, traced as packets of 4 × 4 pixels.

@@ -85,13 +85,13 @@ private:
             const double areaTwo = glm::length(two);
             const glm::dvec3 offset =
                 (areaOne * (b + c) + areaTwo * (c + d)) / (3.0 * std::max(areaOne + areaTwo, 1e-300));
-            push(corners, glm::vec3(a + offset), glm::vec3(areaVector / area), static_cast<float>(area), polygon);
+            push(corners, glm::vec3(a + offset), glm::vec3(areaVector / area), static_cast<float>(area), polygon,
+                 scene_.polygons[polygon].material);
         }
     }
 
     void push(const Corners& corners, const glm::vec3& centroid, const glm::vec3& normal, float area,
-              std::uint32_t polygon) {
-        const std::uint32_t materialIndex = scene_.polygons[polygon].material;
+              std::uint32_t polygon, std::uint32_t materialIndex) {
         const Material& material = scene_.materials[materialIndex];
         mesh_.corners.push_back(corners);
         mesh_.centroid.push_back(centroid);
@@ -105,12 +105,13 @@ private:
 
     void addBack(std::uint32_t patch) {
         const std::uint32_t polygon = mesh_.polygon[patch];
-        if (!scene_.materials[mesh_.material[patch]].twoSided) return;
+        const std::uint32_t material = scene_.polygons[polygon].backMaterial;
+        if (material == kNone) return;
         if (patch == 0 || mesh_.polygon[patch - 1] != polygon)
             mesh_.lookup.setBack(polygon, static_cast<std::uint32_t>(mesh_.size()));
         Corners reversed = mesh_.corners[patch];
         std::reverse(reversed.begin(), reversed.begin() + (reversed[3] == kNone ? 3 : 4));
-        push(reversed, mesh_.centroid[patch], -mesh_.normal[patch], mesh_.area[patch], polygon);
+        push(reversed, mesh_.centroid[patch], -mesh_.normal[patch], mesh_.area[patch], polygon, material);
     }
 
     const Scene& scene_;
@@ -184,7 +185,7 @@ PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
 double totalArea(const Scene& scene) {
     return std::accumulate(scene.polygons.begin(), scene.polygons.end(), 0.0, [&](double sum, const Polygon& polygon) {
         const double area = static_cast<double>(glm::length(areaVector(scene, polygon)));
-        return sum + (scene.materials[polygon.material].twoSided ? 2.0 * area : area);
+        return sum + (polygon.backMaterial != kNone ? 2.0 * area : area);
     });
 }
 
@@ -217,7 +218,10 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
     const auto polygons = static_cast<double>(scene.polygons.size());
-    if (polygons >= wanted) return divide(scene, index, contacts, kUnrefined, progress, counts);
+    // With more polygons than that, at least the large ones must not stay whole: no patch is larger than it would be
+    // in a scene of large polygons.
+    if (polygons >= wanted)
+        return divide(scene, index, contacts, std::sqrt(totalArea(scene) / wanted), progress, counts);
 
     // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
     double length = std::sqrt(totalArea(scene) / wanted);

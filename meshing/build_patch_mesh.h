@@ -9,20 +9,20 @@
 namespace lambert {
 
 struct MeshOptions {
-    std::optional<double> patchLength; //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
+    std::optional<double> patchLength;  //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
     std::optional<std::size_t> patches; //!< about so many; 0 keeps the input's polygons; none: see defaultPatches
-    bool splitContacts = true;         //!< divide a polygon along the edges of others that stand on it
+    bool splitContacts = true;          //!< divide a polygon along the edges of others that stand on it
 };
 
 /// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many.
 std::size_t defaultPatches(const Scene& scene);
 
 struct MeshReport {
-    double patchLength = 0.0;              //!< the length used, metres; infinite where nothing was refined
-    std::size_t undividedPolygons = 0;     //!< could not be divided cleanly, kept whole (T-vertices remain)
-    double undividedArea = 0.0;            //!< of these, m²
-    std::size_t degeneratePatches = 0;     //!< dropped: no area in single precision
-    std::size_t contactPolygons = 0;       //!< divided along contact lines
+    double patchLength = 0.0;               //!< the length used, metres; infinite where nothing was refined
+    std::size_t undividedPolygons = 0;      //!< could not be divided cleanly, kept whole (T-vertices remain)
+    double undividedArea = 0.0;             //!< of these, m²
+    std::size_t degeneratePatches = 0;      //!< dropped: no area in single precision
+    std::size_t contactPolygons = 0;        //!< divided along contact lines
     std::size_t ignoredContactPolygons = 0; //!< their contact lines cross each other
 };
 

@@ -63,8 +63,8 @@ std::vector<PlanarContact> findContacts(const Scene& scene, const VertexIndex& i
     return contacts;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>>
-contactLines(const PlanarContact& contact, const Scene& scene, const EdgeDivision& division) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarContact& contact, const Scene& scene,
+                                                                  const EdgeDivision& division) {
     const Polygon& polygon = scene.polygons[contact.polygon];
     const PlaneFrame frame = planeFrame(scene, polygon);
     const auto tolerance = 2.0 * static_cast<double>(weldTolerance(scene));
@@ -81,8 +81,7 @@ contactLines(const PlanarContact& contact, const Scene& scene, const EdgeDivisio
         for (const std::uint32_t segment : division.segmentsAt(end)) {
             const auto [a, b] = division.segment(segment);
             if (a != end || !std::binary_search(ends.begin(), ends.end(), b)) continue;
-            const glm::dvec2 middle =
-                0.5 * (frame.project(scene.positions[a]) + frame.project(scene.positions[b]));
+            const glm::dvec2 middle = 0.5 * (frame.project(scene.positions[a]) + frame.project(scene.positions[b]));
             if (depthInside(scene, polygon, frame, middle) <= tolerance) continue; // along the border
             const std::vector<std::uint32_t> vertices = division.segmentVertices(segment);
             for (std::size_t k = 0; k + 1 < vertices.size(); ++k) lines.emplace_back(vertices[k], vertices[k + 1]);

@@ -24,7 +24,7 @@ std::vector<PlanarContact> findContacts(const Scene& scene, const VertexIndex& i
 
 /// The edges of other polygons that lie inside this one, as divided by `division`: pairs of consecutive vertices.
 /// An edge that leaves the polygon is not among them.
-std::vector<std::pair<std::uint32_t, std::uint32_t>>
-contactLines(const PlanarContact& contact, const Scene& scene, const EdgeDivision& division);
+std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarContact& contact, const Scene& scene,
+                                                                  const EdgeDivision& division);
 
 } // namespace lambert

@@ -17,8 +17,7 @@ namespace lambert {
 class EdgeDivision {
 public:
     /// Appends the division points to `positions`, which begin with the scene's. `targetLength` in metres, may be infinite.
-    EdgeDivision(const Scene& scene, const VertexIndex& index, double targetLength,
-                 std::vector<glm::vec3>& positions);
+    EdgeDivision(const Scene& scene, const VertexIndex& index, double targetLength, std::vector<glm::vec3>& positions);
 
     /// One side of a polygon: all vertices from corner k to corner k + 1, both included.
     struct Side {

@@ -151,8 +151,7 @@ std::vector<Corners> gridFace(const std::array<std::vector<std::uint32_t>, 4>& s
         for (std::size_t i = 1; i < columns; ++i) {
             const double s = static_cast<double>(i) / static_cast<double>(columns);
             const double t = static_cast<double>(j) / static_cast<double>(rows);
-            positions.emplace_back(
-                glm::mix(glm::mix(corner[0], corner[1], s), glm::mix(corner[3], corner[2], s), t));
+            positions.emplace_back(glm::mix(glm::mix(corner[0], corner[1], s), glm::mix(corner[3], corner[2], s), t));
         }
     }
     const auto vertex = [&](std::size_t i, std::size_t j) {

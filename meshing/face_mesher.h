@@ -15,7 +15,7 @@ namespace lambert {
 /// A polygon to be divided: its border with all vertices on it, and the lines along which other surfaces stand on it.
 struct FaceOutline {
     PlaneFrame frame;
-    std::vector<std::uint32_t> border;                            //!< counter-clockwise, no repetition
+    std::vector<std::uint32_t> border;                             //!< counter-clockwise, no repetition
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contacts; //!< inside the polygon; no end outside
 };
 

@@ -19,7 +19,7 @@ struct HalfEdgeTraits : OpenMesh::DefaultTraits {
 /// continuous, and creases, material borders and contact lines are boundaries.
 struct HalfEdgeMesh {
     OpenMesh::PolyMesh_ArrayKernelT<HalfEdgeTraits> topology; //!< face index = patch index
-    std::size_t separatedFaces = 0; //!< refused as non-manifold, given vertices of their own
+    std::size_t separatedFaces = 0;                           //!< refused as non-manifold, given vertices of their own
 };
 
 /// Connects two patches across an edge if their materials are the same, their normals differ by less than `creaseAngle`

@@ -59,9 +59,8 @@ std::vector<HalfEdge> triangleEdges(const std::vector<Corners>& faces) {
             edges.push_back({edgeKey(a, b), face, c[(k + 2) % 3], a < b});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return std::tie(a.key, a.face) < std::tie(b.key, b.face);
-    });
+    std::sort(edges.begin(), edges.end(),
+              [](const HalfEdge& a, const HalfEdge& b) { return std::tie(a.key, a.face) < std::tie(b.key, b.face); });
     return edges;
 }
 
@@ -83,8 +82,7 @@ std::vector<std::uint32_t> pairTriangles(std::vector<Corners>& faces, std::span<
         const std::uint32_t from = one.forward ? low : high;
         const std::uint32_t to = one.forward ? high : low;
         const Corners quad{from, two.opposite, to, one.opposite};
-        if (const auto value = badness(quad, positions))
-            candidates.push_back({*value, one.face, two.face, quad});
+        if (const auto value = badness(quad, positions)) candidates.push_back({*value, one.face, two.face, quad});
     }
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
         return std::tie(a.badness, a.first, a.second) < std::tie(b.badness, b.first, b.second);

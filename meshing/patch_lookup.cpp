@@ -19,8 +19,8 @@ float cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// The smallest of the signed areas that the point spans with the edges of a patch: not negative inside.
 float insideness(const glm::vec2* c, glm::vec2 point) {
-    float smallest = std::min({cross(c[1] - c[0], point - c[0]), cross(c[2] - c[1], point - c[1]),
-                               cross(c[0] - c[3], point - c[3])});
+    float smallest = std::min(
+        {cross(c[1] - c[0], point - c[0]), cross(c[2] - c[1], point - c[1]), cross(c[0] - c[3], point - c[3])});
     if (c[3] != c[2]) smallest = std::min(smallest, cross(c[3] - c[2], point - c[2]));
     return smallest;
 }

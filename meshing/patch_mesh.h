@@ -14,8 +14,9 @@ namespace lambert {
 /// Patches [0, frontCount) are the fronts of the source polygons, contiguous per polygon and in the polygons'
 /// order. The second sides of two-sided polygons follow, in the same order, with reversed corners.
 struct PatchMesh {
-    std::vector<glm::vec3> positions;                  //!< #vertices, metres; shared wherever patches touch
-    std::vector<std::array<std::uint32_t, 4>> corners; //!< #patches, into positions, counter-clockwise; a triangle ends in kNone
+    std::vector<glm::vec3> positions; //!< #vertices, metres; shared wherever patches touch
+    std::vector<std::array<std::uint32_t, 4>>
+        corners; //!< #patches, into positions, counter-clockwise; a triangle ends in kNone
 
     std::vector<glm::vec3> centroid;     //!< #patches, metres
     std::vector<glm::vec3> normal;       //!< #patches, unit length, to the patch's side

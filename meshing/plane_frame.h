@@ -23,8 +23,8 @@ struct PlaneFrame {
 inline PlaneFrame planeFrame(const Scene& scene, const Polygon& polygon) {
     glm::dvec3 longest(0.0);
     for (int k = 0; k < polygon.size(); ++k) {
-        const glm::dvec3 edge = glm::dvec3(corner(scene, polygon, (k + 1) % polygon.size())) -
-                                glm::dvec3(corner(scene, polygon, k));
+        const glm::dvec3 edge =
+            glm::dvec3(corner(scene, polygon, (k + 1) % polygon.size())) - glm::dvec3(corner(scene, polygon, k));
         if (glm::dot(edge, edge) > glm::dot(longest, longest)) longest = edge;
     }
     // In double from the corners: the float area vector of a sliver is a poor normal.

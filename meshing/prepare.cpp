@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <tuple>
 
 namespace lambert {
 
@@ -16,8 +18,8 @@ namespace {
 bool isNeedle(const Scene& scene, const Polygon& polygon, float tolerance) {
     float longest = 0.0F;
     for (int k = 0; k < polygon.size(); ++k)
-        longest = std::max(longest, glm::distance(corner(scene, polygon, k),
-                                                  corner(scene, polygon, (k + 1) % polygon.size())));
+        longest = std::max(longest,
+                           glm::distance(corner(scene, polygon, k), corner(scene, polygon, (k + 1) % polygon.size())));
     const float height = (polygon.isQuad() ? 1.0F : 2.0F) * glm::length(areaVector(scene, polygon)) / longest;
     return !(height > tolerance);
 }
@@ -54,17 +56,63 @@ void compactPositions(Scene& scene) {
     scene.positions = std::move(used);
 }
 
+/// The corners from the smallest vertex on, in their order or reversed: one key for all polygons that coincide.
+Corners coincidenceKey(const Polygon& polygon, bool& reversed) {
+    const auto count = static_cast<std::size_t>(polygon.size());
+    const auto& v = polygon.vertices;
+    const auto first = static_cast<std::size_t>(
+        std::min_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(count)) - v.begin());
+    reversed = v[(first + 1) % count] > v[(first + count - 1) % count];
+    Corners key{kNone, kNone, kNone, kNone};
+    for (std::size_t k = 0; k < count; ++k) key[k] = v[(first + (reversed ? count - k : k)) % count];
+    return key;
+}
+
+/// Merges polygons on the same vertices into the first of them.
+void mergeCoincident(Scene& scene, PrepareReport& counts) {
+    struct Entry {
+        Corners key;
+        std::uint32_t polygon;
+        bool reversed;
+    };
+    std::vector<Entry> entries;
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        Entry entry{{}, i, false};
+        entry.key = coincidenceKey(scene.polygons[i], entry.reversed);
+        entries.push_back(entry);
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& a, const Entry& b) { return std::tie(a.key, a.polygon) < std::tie(b.key, b.polygon); });
+    std::vector<bool> dropped(scene.polygons.size(), false);
+    for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+        Polygon& kept = scene.polygons[entries[begin].polygon];
+        for (end = begin + 1; end < entries.size() && entries[end].key == entries[begin].key; ++end) {
+            const Polygon& other = scene.polygons[entries[end].polygon];
+            dropped[entries[end].polygon] = true;
+            if (entries[end].reversed == entries[begin].reversed || kept.backMaterial != kNone) {
+                ++counts.duplicatePolygons;
+            } else {
+                kept.backMaterial = other.material;
+                ++counts.mergedSheets;
+            }
+        }
+    }
+    std::size_t next = 0;
+    std::erase_if(scene.polygons, [&](const Polygon&) { return dropped[next++]; });
+}
+
 std::size_t joinTriangles(Scene& scene) {
     std::vector<Corners> faces;
     std::vector<std::uint32_t> group;
-    // Node and material as one number: only alike polygons are joined.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> groups;
-    for (const Polygon& polygon : scene.polygons) groups.emplace_back(polygon.node, polygon.material);
+    // Node and materials as one number: only alike polygons are joined.
+    const auto key = [](const Polygon& p) { return std::array{p.node, p.material, p.backMaterial}; };
+    std::vector<std::array<std::uint32_t, 3>> groups;
+    for (const Polygon& polygon : scene.polygons) groups.push_back(key(polygon));
     std::sort(groups.begin(), groups.end());
     groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
     for (const Polygon& polygon : scene.polygons) {
         faces.push_back(polygon.vertices);
-        const auto it = std::lower_bound(groups.begin(), groups.end(), std::pair(polygon.node, polygon.material));
+        const auto it = std::lower_bound(groups.begin(), groups.end(), key(polygon));
         group.push_back(static_cast<std::uint32_t>(it - groups.begin()));
     }
     const std::vector<std::uint32_t> origin = pairTriangles(faces, group, scene.positions);
@@ -96,13 +144,19 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     prepared.cameras = scene.cameras;
     prepared.polygons.reserve(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
-        if (const auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance))
-            prepared.polygons.push_back(*welded);
-        else
+        auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance);
+        if (!welded) {
             ++counts.collapsedPolygons;
+            continue;
+        }
+        if (scene.materials[polygon.material].twoSided) welded->backMaterial = polygon.material;
+        prepared.polygons.push_back(*welded);
     }
-    compactPositions(prepared);
+    // Twice: sheets of triangles can be joined once they are one, sheets of differently cut quads only coincide then.
+    if (options.mergeCoincident) mergeCoincident(prepared, counts);
     if (options.joinTriangles) counts.joinedPairs = joinTriangles(prepared);
+    if (options.mergeCoincident) mergeCoincident(prepared, counts);
+    compactPositions(prepared);
     if (report != nullptr) *report = counts;
     return prepared;
 }

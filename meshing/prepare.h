@@ -7,12 +7,16 @@
 namespace lambert {
 
 struct PrepareOptions {
-    bool joinTriangles = true; //!< coplanar triangle pairs that make a good quad become one polygon
+    bool joinTriangles = true;   //!< coplanar triangle pairs that make a good quad become one polygon
+    bool mergeCoincident = true; //!< polygons with the same vertices become one, with what each shows on its side
 };
 
 struct PrepareReport {
-    std::size_t weldedVertices = 0;    //!< vertices that coincided with another
-    std::size_t collapsedPolygons = 0; //!< dropped: once their vertices are welded nothing is left, or a needle without height
+    std::size_t weldedVertices = 0; //!< vertices that coincided with another
+    std::size_t collapsedPolygons =
+        0; //!< dropped: once their vertices are welded nothing is left, or a needle without height
+    std::size_t duplicatePolygons = 0; //!< dropped: the same vertices and the same side as another
+    std::size_t mergedSheets = 0;      //!< back to back with another: became the back of that one
     std::size_t joinedPairs = 0;       //!< triangle pairs that became quads
 };
 
@@ -20,7 +24,8 @@ struct PrepareReport {
 float weldTolerance(const Scene& scene);
 
 /// The scene as meshing and ray casting use it: equal vertices welded, unused ones removed, polygons that vanish dropped,
-/// triangle pairs joined. Polygons stay in the file's order.
+/// polygons on the same vertices merged (a ray must not choose between them), triangle pairs joined. Every polygon knows
+/// the material of its back. Polygons stay in the file's order.
 Scene prepareScene(const Scene& scene, const PrepareOptions& options = {}, PrepareReport* report = nullptr);
 
 } // namespace lambert

@@ -27,10 +27,9 @@ Camera lookAtCamera(const glm::vec3& eye, const glm::vec3& lookAt, const glm::ve
         for (int c = 0; c < 3; ++c)
             if (!std::isfinite(v[c])) throw UsageError(fmt::format("camera: {} is not finite", text(v)));
     if (!(fovDegrees > 0.0F && fovDegrees < 180.0F))
-        throw UsageError(fmt::format("camera: the field of view is {} degrees; it must lie between 0 and 180",
-                                     fovDegrees));
-    if (eye == lookAt)
-        throw UsageError(fmt::format("camera: eye and look-at are the same point, {}", text(eye)));
+        throw UsageError(
+            fmt::format("camera: the field of view is {} degrees; it must lie between 0 and 180", fovDegrees));
+    if (eye == lookAt) throw UsageError(fmt::format("camera: eye and look-at are the same point, {}", text(eye)));
     Camera camera;
     camera.eye = eye;
     // In double: squares of large or small coordinates leave the range of float.
@@ -39,8 +38,8 @@ Camera lookAtCamera(const glm::vec3& eye, const glm::vec3& lookAt, const glm::ve
     if (upLength == 0.0) throw UsageError("camera: up is the zero vector");
     const glm::dvec3 unitUp = glm::dvec3(up) / upLength;
     if (glm::length(glm::cross(direction, unitUp)) < 1e-4)
-        throw UsageError(fmt::format("camera: up ({}) is parallel to the view from {} to {}", text(up),
-                                     text(eye), text(lookAt)));
+        throw UsageError(
+            fmt::format("camera: up ({}) is parallel to the view from {} to {}", text(up), text(eye), text(lookAt)));
     camera.direction = glm::vec3(direction);
     camera.up = glm::vec3(unitUp);
     camera.verticalFov = glm::radians(fovDegrees);

@@ -54,14 +54,11 @@ float score(const RayCaster& caster, const Camera& camera, float aspect) {
     for (int y = 0; y < kRays; ++y) {
         for (int x = 0; x < kRays; ++x) {
             const float centred = static_cast<float>(x) + 0.5F - 0.5F * kRays;
-            const glm::vec3 direction =
-                rays.direction(0.5F * kRays + aspect * centred, static_cast<float>(y) + 0.5F);
+            const glm::vec3 direction = rays.direction(0.5F * kRays + aspect * centred, static_cast<float>(y) + 0.5F);
             const std::optional<Hit> hit = caster.closest(Ray{camera.eye, direction});
             if (!hit) continue;
             const float distance = hit->distance * glm::length(direction);
-            const bool front =
-                hit->front ||
-                caster.scene().materials[caster.scene().polygons[hit->polygon].material].twoSided;
+            const bool front = hit->front || caster.scene().polygons[hit->polygon].backMaterial != kNone;
             sum += front ? distance / (distance + nearby) : -1.0F;
         }
     }
@@ -79,8 +76,7 @@ Camera outsideCamera(const Bounds& bounds, const glm::vec3& from, float aspect) 
     const float tangent = std::tan(0.5F * glm::radians(kOutsideFov));
     float distance = 0.01F * bounds.diagonal();
     for (int k = 0; k < 8; ++k) {
-        const glm::vec3 sign((k & 1) != 0 ? 0.5F : -0.5F, (k & 2) != 0 ? 0.5F : -0.5F,
-                             (k & 4) != 0 ? 0.5F : -0.5F);
+        const glm::vec3 sign((k & 1) != 0 ? 0.5F : -0.5F, (k & 2) != 0 ? 0.5F : -0.5F, (k & 4) != 0 ? 0.5F : -0.5F);
         const glm::vec3 corner = sign * bounds.size();
         const float extent =
             std::max(std::abs(glm::dot(corner, right)) / aspect, std::abs(glm::dot(corner, pictureUp)));

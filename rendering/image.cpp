@@ -60,22 +60,20 @@ ImageFormat imageFormatOf(const std::filesystem::path& path) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".exr") return ImageFormat::Exr;
     if (extension == ".png") return ImageFormat::Png;
-    throw UsageError(fmt::format(
-        "{}: a picture's name must end in .png (tone-mapped) or .exr (linear radiance)", path.string()));
+    throw UsageError(
+        fmt::format("{}: a picture's name must end in .png (tone-mapped) or .exr (linear radiance)", path.string()));
 }
 
 void writeImage(const Image& image, const std::filesystem::path& path, float ev) {
     const bool linear = imageFormatOf(path) == ImageFormat::Exr;
-    OIIO::ImageSpec spec(image.width, image.height, 3,
-                         linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+    OIIO::ImageSpec spec(image.width, image.height, 3, linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     spec.attribute("Software", "Lambert");
     // OpenImageIO puts the present time into an EXR file that has none; equal pixels must give equal files.
     if (linear) spec.attribute("DateTime", "1970:01:01 00:00:00");
     const std::vector<unsigned char> bytes = linear ? std::vector<unsigned char>() : srgbBytes(image, ev);
     const void* pixels = linear ? static_cast<const void*>(image.pixels.data()) : bytes.data();
-    writeWholeFile(path,
-                   [&](const std::filesystem::path& temporary) { writePixels(temporary, spec, pixels); });
+    writeWholeFile(path, [&](const std::filesystem::path& temporary) { writePixels(temporary, spec, pixels); });
 }
 
 } // namespace lambert

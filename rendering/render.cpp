@@ -61,9 +61,9 @@ private:
         for (int lane = 0; lane < RayPacket::kSize; ++lane) {
             const int x = left + lane % kTile;
             const int y = top + lane / kTile;
-            const auto bits = philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                      static_cast<std::uint32_t>(sample), 0},
-                                     options_.seed);
+            const auto bits = philox(
+                {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(sample), 0},
+                options_.seed);
             const glm::vec2 place = placeInPixel(sample, {uniformFloat(bits[0]), uniformFloat(bits[1])});
             const glm::vec3 direction =
                 rays_.direction(static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
@@ -90,8 +90,7 @@ private:
         const Quantity quantity = isEmitter(baked_, patch) ? Quantity::Radiosity : options_.quantity;
         Rgb radiance(0.0F);
         for (std::size_t k = 0; k < (baked_.isQuad(patch) ? 4U : 3U); ++k)
-            radiance +=
-                static_cast<float>(weights[k]) * shownRadiance(baked_, baked_.faces[patch][k], quantity);
+            radiance += static_cast<float>(weights[k]) * shownRadiance(baked_, baked_.faces[patch][k], quantity);
         return radiance;
     }
 
@@ -105,17 +104,15 @@ private:
 
 void requireInRange(const RenderOptions& options) {
     if (options.width < 1 || options.height < 1)
-        throw UsageError(
-            fmt::format("picture size {}x{}: both must be at least 1", options.width, options.height));
+        throw UsageError(fmt::format("picture size {}x{}: both must be at least 1", options.width, options.height));
     if (options.samplesPerAxis < 1 || options.samplesPerAxis > 64)
-        throw UsageError(
-            fmt::format("{} samples per axis of a pixel: 1 to 64 are allowed", options.samplesPerAxis));
+        throw UsageError(fmt::format("{} samples per axis of a pixel: 1 to 64 are allowed", options.samplesPerAxis));
 }
 
 } // namespace
 
-Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster,
-                  const Camera& camera, const RenderOptions& options, Progress& progress) {
+Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster, const Camera& camera,
+                  const RenderOptions& options, Progress& progress) {
     requireInRange(options);
     Image image;
     image.width = options.width;
@@ -129,8 +126,7 @@ Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster
     progress.begin("picture", columns * rows);
     parallelFor(columns * rows, 64, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t tile = begin; tile < end; ++tile)
-            renderer.render(static_cast<int>(tile % columns) * kTile,
-                            static_cast<int>(tile / columns) * kTile, image);
+            renderer.render(static_cast<int>(tile % columns) * kTile, static_cast<int>(tile / columns) * kTile, image);
         progress.advance(end - begin);
     });
     progress.end();

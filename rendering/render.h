@@ -29,7 +29,7 @@ struct RenderOptions {
 ///
 /// The pixels do not depend on the number of threads. Throws UsageError if an option is out of range,
 /// Cancelled.
-Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster,
-                  const Camera& camera, const RenderOptions& options, Progress& progress);
+Image renderBaked(const PatchMesh& mesh, const BakedMesh& baked, const RayCaster& caster, const Camera& camera,
+                  const RenderOptions& options, Progress& progress);
 
 } // namespace lambert

@@ -19,8 +19,8 @@ struct Element {
 };
 
 std::string typeName(const tinygltf::Accessor& accessor) {
-    static constexpr std::array<const char*, 7> kComponents = {
-        "BYTE", "UNSIGNED_BYTE", "SHORT", "UNSIGNED_SHORT", "INT", "UNSIGNED_INT", "FLOAT"};
+    static constexpr std::array<const char*, 7> kComponents = {"BYTE", "UNSIGNED_BYTE", "SHORT", "UNSIGNED_SHORT",
+                                                               "INT",  "UNSIGNED_INT",  "FLOAT"};
     const auto component = static_cast<std::size_t>(accessor.componentType - TINYGLTF_COMPONENT_TYPE_BYTE);
     const char* shape = "a matrix";
     if (accessor.type == TINYGLTF_TYPE_SCALAR) shape = "SCALAR";
@@ -28,8 +28,7 @@ std::string typeName(const tinygltf::Accessor& accessor) {
     if (accessor.type == TINYGLTF_TYPE_VEC3) shape = "VEC3";
     if (accessor.type == TINYGLTF_TYPE_VEC4) shape = "VEC4";
     return fmt::format("{} {}",
-                       component < kComponents.size() ? kComponents[component]
-                                                      : std::to_string(accessor.componentType),
+                       component < kComponents.size() ? kComponents[component] : std::to_string(accessor.componentType),
                        shape);
 }
 
@@ -74,9 +73,8 @@ GltfAccessor::GltfAccessor(const std::string& file, const tinygltf::Model& model
     const std::string viewPlace = fmt::format("/bufferViews/{}", accessor.bufferView);
     const auto& buffer = at(file, model.buffers, "buffers", view.buffer, viewPlace + "/buffer");
     if (view.byteOffset > buffer.data.size())
-        failAtMember(
-            file, viewPlace + "/byteOffset", std::to_string(view.byteOffset),
-            fmt::format("at most {} (buffer {} has so many bytes)", buffer.data.size(), view.buffer));
+        failAtMember(file, viewPlace + "/byteOffset", std::to_string(view.byteOffset),
+                     fmt::format("at most {} (buffer {} has so many bytes)", buffer.data.size(), view.buffer));
     if (view.byteLength > buffer.data.size() - view.byteOffset)
         failAtMember(file, viewPlace + "/byteLength", std::to_string(view.byteLength),
                      fmt::format("at most {} (buffer {} has {} bytes)", buffer.data.size() - view.byteOffset,
@@ -90,9 +88,9 @@ GltfAccessor::GltfAccessor(const std::string& file, const tinygltf::Model& model
     if (accessor.byteOffset <= view.byteLength && elementSize <= view.byteLength - accessor.byteOffset)
         fitting = (view.byteLength - accessor.byteOffset - elementSize) / stride_ + 1;
     if (accessor.count > fitting)
-        failAtMember(file, place + "/count", std::to_string(accessor.count),
-                     fmt::format("at most {} (bufferView {} has {} bytes)", fitting, accessor.bufferView,
-                                 view.byteLength));
+        failAtMember(
+            file, place + "/count", std::to_string(accessor.count),
+            fmt::format("at most {} (bufferView {} has {} bytes)", fitting, accessor.bufferView, view.byteLength));
     count_ = accessor.count;
     componentSize_ = element.componentSize;
     if (count_ > 0) data_ = buffer.data.data() + view.byteOffset + accessor.byteOffset;

@@ -43,8 +43,7 @@ Container unpack(const std::string& file, std::string_view bytes) {
     if (word(bytes, 4) != 2) fail(fmt::format("found glTF binary version {}, allowed is 2", word(bytes, 4)));
     const std::size_t length = word(bytes, 8);
     if (length > bytes.size())
-        fail(fmt::format("found {} bytes, but its header announces {}: is the file cut?", bytes.size(),
-                         length));
+        fail(fmt::format("found {} bytes, but its header announces {}: is the file cut?", bytes.size(), length));
     if (length < 20) fail(fmt::format("its header announces {} bytes, a .glb has at least 20", length));
     bytes = bytes.substr(0, length);
 
@@ -79,8 +78,7 @@ void refuseDeepNesting(const std::string& file, std::string_view text) {
             inString = true;
         } else if (c == '[' || c == '{') {
             if (++depth > kDeepestNesting)
-                throw InputError(
-                    fmt::format("{}: found JSON nested deeper than {} levels", file, kDeepestNesting));
+                throw InputError(fmt::format("{}: found JSON nested deeper than {} levels", file, kDeepestNesting));
         } else if (c == ']' || c == '}') {
             --depth;
         }
@@ -92,8 +90,7 @@ json parseJson(const std::string& file, std::string_view text) {
     try {
         json document = json::parse(text.begin(), text.end());
         if (!document.is_object()) throw InputError(file + ": found JSON that is not an object");
-        for (const char* unused :
-             {"animations", "extensions", "extras", "images", "samplers", "skins", "textures"})
+        for (const char* unused : {"animations", "extensions", "extras", "images", "samplers", "skins", "textures"})
             document.erase(unused);
         return document;
     } catch (const json::exception& error) {
@@ -110,8 +107,7 @@ std::string decodedUri(std::string_view uri) {
     for (std::size_t k = 0; k < uri.size(); ++k) {
         unsigned code = 0;
         const bool escape = uri[k] == '%' && k + 2 < uri.size();
-        if (escape &&
-            std::from_chars(uri.data() + k + 1, uri.data() + k + 3, code, 16).ptr == uri.data() + k + 3) {
+        if (escape && std::from_chars(uri.data() + k + 1, uri.data() + k + 3, code, 16).ptr == uri.data() + k + 3) {
             result += static_cast<char>(code);
             k += 2;
         } else {
@@ -140,8 +136,8 @@ std::size_t prepareDataUri(const std::string& file, const std::string& member, s
 
 /// The size of a buffer's file, which must lie where the glTF file says: tinygltf would also look for it in
 /// the current folder, and reads `+` as a space.
-std::size_t prepareExternalUri(const std::string& file, const std::string& member,
-                               const std::filesystem::path& folder, std::string& uri) {
+std::size_t prepareExternalUri(const std::string& file, const std::string& member, const std::filesystem::path& folder,
+                               std::string& uri) {
     const std::filesystem::path target = folder / decodedUri(uri);
     std::error_code error;
     if (uri.empty() || !std::filesystem::is_regular_file(target, error))
@@ -236,10 +232,9 @@ tinygltf::Model loadGltfModel(const std::filesystem::path& path) {
         const auto length = static_cast<unsigned>(text.size());
         const bool loaded =
             isBinary ? loader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                                   reinterpret_cast<const unsigned char*>(text.data()),
-                                                   length, folder.string())
-                     : loader.LoadASCIIFromString(&model, &errors, &warnings, text.data(), length,
-                                                  folder.string());
+                                                   reinterpret_cast<const unsigned char*>(text.data()), length,
+                                                   folder.string())
+                     : loader.LoadASCIIFromString(&model, &errors, &warnings, text.data(), length, folder.string());
         if (!loaded) throw InputError(fmt::format("{}: {}", file, oneLine(errors)));
     } catch (const std::length_error& error) { // thrown by containers inside the library
         throw InputError(fmt::format("{}: {}", file, error.what()));

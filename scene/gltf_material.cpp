@@ -23,8 +23,7 @@ float checkedNumber(const std::string& file, const std::string& member, double n
 Rgb checkedColour(const std::string& file, const std::string& member, const std::vector<double>& numbers) {
     Rgb colour(0.0F);
     for (int k = 0; k < 3; ++k)
-        colour[k] =
-            checkedNumber(file, fmt::format("{}/{}", member, k), numbers[static_cast<std::size_t>(k)]);
+        colour[k] = checkedNumber(file, fmt::format("{}/{}", member, k), numbers[static_cast<std::size_t>(k)]);
     return colour;
 }
 

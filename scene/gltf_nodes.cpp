@@ -24,8 +24,7 @@ struct Visit {
 glm::dmat4 localTransform(const std::string& file, const tinygltf::Node& node, int index) {
     if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
     glm::dmat4 transform(1.0);
-    if (!node.translation.empty())
-        transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
+    if (!node.translation.empty()) transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
     if (!node.rotation.empty()) {
         const auto& q = node.rotation; // x, y, z, w
         const glm::dquat rotation(q[3], q[0], q[1], q[2]);
@@ -43,8 +42,7 @@ std::vector<Visit> rootVisits(const std::string& file, const tinygltf::Model& mo
     if (!model.scenes.empty()) {
         const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
         if (static_cast<std::size_t>(scene) >= model.scenes.size())
-            failAtMember(file, "/scene", std::to_string(scene),
-                         fmt::format("0 to {}", model.scenes.size() - 1));
+            failAtMember(file, "/scene", std::to_string(scene), fmt::format("0 to {}", model.scenes.size() - 1));
         const std::vector<int>& nodes = model.scenes[static_cast<std::size_t>(scene)].nodes;
         for (std::size_t k = 0; k < nodes.size(); ++k)
             roots.push_back({nodes[k], fmt::format("/scenes/{}/nodes/{}", scene, k), glm::dmat4(1.0)});
@@ -53,11 +51,9 @@ std::vector<Visit> rootVisits(const std::string& file, const tinygltf::Model& mo
     std::vector<bool> hasParent(model.nodes.size(), false);
     for (const tinygltf::Node& node : model.nodes)
         for (const int child : node.children)
-            if (static_cast<std::size_t>(child) < hasParent.size())
-                hasParent[static_cast<std::size_t>(child)] = true;
+            if (static_cast<std::size_t>(child) < hasParent.size()) hasParent[static_cast<std::size_t>(child)] = true;
     for (std::size_t k = 0; k < hasParent.size(); ++k)
-        if (!hasParent[k])
-            roots.push_back({static_cast<int>(k), fmt::format("/nodes/{}", k), glm::dmat4(1.0)});
+        if (!hasParent[k]) roots.push_back({static_cast<int>(k), fmt::format("/nodes/{}", k), glm::dmat4(1.0)});
     return roots;
 }
 
@@ -83,8 +79,7 @@ std::vector<GltfNode> collectGltfNodes(const std::string& file, const tinygltf::
         const tinygltf::Node& node = model.nodes[index];
         nodes.push_back({visit.index, visit.parentToWorld * localTransform(file, node, visit.index)});
         for (std::size_t k = node.children.size(); k-- > 0;)
-            stack.push_back(
-                {node.children[k], fmt::format("/nodes/{}/children/{}", index, k), nodes.back().toWorld});
+            stack.push_back({node.children[k], fmt::format("/nodes/{}/children/{}", index, k), nodes.back().toWorld});
     }
     return nodes;
 }

@@ -65,8 +65,7 @@ private:
     void refuseUnknownExtensions() const {
         for (std::size_t k = 0; k < model_.extensionsRequired.size(); ++k) {
             const std::string& name = model_.extensionsRequired[k];
-            if (std::find(kHarmlessExtensions.begin(), kHarmlessExtensions.end(), name) ==
-                kHarmlessExtensions.end())
+            if (std::find(kHarmlessExtensions.begin(), kHarmlessExtensions.end(), name) == kHarmlessExtensions.end())
                 failAtMember(file_, fmt::format("/extensionsRequired/{}", k), inQuotes(name),
                              "only extensions that Lambert knows: export without it");
         }
@@ -84,12 +83,10 @@ private:
 
         remapped_.reset();
         for (std::size_t k = 0; k < mesh.primitives.size(); ++k)
-            addPrimitive(mesh.primitives[k], fmt::format("/meshes/{}/primitives/{}", source.mesh, k),
-                         node.toWorld);
+            addPrimitive(mesh.primitives[k], fmt::format("/meshes/{}/primitives/{}", source.mesh, k), node.toWorld);
     }
 
-    void addPrimitive(const tinygltf::Primitive& primitive, const std::string& place,
-                      const glm::dmat4& toWorld) {
+    void addPrimitive(const tinygltf::Primitive& primitive, const std::string& place, const glm::dmat4& toWorld) {
         if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
             failAtMember(file_, place + "/mode", std::to_string(primitive.mode), "0 to 6");
         if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
@@ -125,8 +122,7 @@ private:
                              fmt::format("indices below {} (the number of vertices)", positions.count()));
             std::uint32_t& known = sceneVertex_[vertex];
             if (known == kNone)
-                known =
-                    builder_.addPosition(glm::dvec3(toWorld * glm::dvec4(positions.position(vertex), 1.0)));
+                known = builder_.addPosition(glm::dvec3(toWorld * glm::dvec4(positions.position(vertex), 1.0)));
             corners[k] = known;
         }
         return corners;
@@ -141,10 +137,8 @@ private:
         };
         if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
             if (corners.size() % 3 != 0)
-                failAtMember(file_, place, fmt::format("triangles with {} corners", corners.size()),
-                             "a multiple of 3");
-            for (std::size_t k = 0; k < corners.size(); k += 3)
-                add(corners[k], corners[k + 1], corners[k + 2]);
+                failAtMember(file_, place, fmt::format("triangles with {} corners", corners.size()), "a multiple of 3");
+            for (std::size_t k = 0; k < corners.size(); k += 3) add(corners[k], corners[k + 1], corners[k + 2]);
         } else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
             for (std::size_t k = 0; k + 2 < corners.size(); ++k)
                 add(corners[k], corners[k + 1 + k % 2], corners[k + 2 - k % 2]);
@@ -178,15 +172,14 @@ private:
         }
         const double fov = definition.perspective.yfov;
         if (!(fov > 0.0 && fov < glm::pi<double>()))
-            failAtMember(file_, fmt::format("/cameras/{}/perspective/yfov", source.camera),
-                         fmt::format("{:g}", fov), "radians above 0 and below pi");
+            failAtMember(file_, fmt::format("/cameras/{}/perspective/yfov", source.camera), fmt::format("{:g}", fov),
+                         "radians above 0 and below pi");
         const glm::dvec3 eye(node.toWorld[3]);
         const glm::dvec3 direction = glm::normalize(-glm::dvec3(node.toWorld[2]));
         const glm::dvec3 up = glm::normalize(glm::dvec3(node.toWorld[1]));
         const double sine = glm::length(glm::cross(direction, up));
         if (!(sine > 1e-6) || !std::isfinite(glm::dot(eye, eye))) {
-            builder_.warn(
-                fmt::format("the camera {} was ignored: its transform is singular", inQuotes(camera.name)));
+            builder_.warn(fmt::format("the camera {} was ignored: its transform is singular", inQuotes(camera.name)));
             return;
         }
         camera.eye = glm::vec3(eye);

@@ -30,14 +30,12 @@ std::string readInputFile(const std::filesystem::path& path) {
         const bool missing = !error || error == std::errc::no_such_file_or_directory;
         throw InputError(fmt::format("{}: {}", path.string(), missing ? "no such file" : error.message()));
     }
-    if (std::filesystem::is_directory(status))
-        throw InputError(path.string() + ": found a folder, expected a file");
+    if (std::filesystem::is_directory(status)) throw InputError(path.string() + ": found a folder, expected a file");
     if (!std::filesystem::is_regular_file(status))
         throw InputError(path.string() + ": found a device or pipe, expected a file");
 
     std::ifstream stream(path, std::ios::binary);
-    if (!stream)
-        throw InputError(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
+    if (!stream) throw InputError(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
     std::string content(std::filesystem::file_size(path), '\0');
     stream.read(content.data(), static_cast<std::streamsize>(content.size()));
     if (stream.bad() || static_cast<std::size_t>(stream.gcount()) != content.size())

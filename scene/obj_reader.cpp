@@ -17,8 +17,7 @@ namespace lambert {
 namespace {
 
 /// The files that an `mtllib` statement names: one with spaces in its name, or several.
-std::vector<std::filesystem::path> libraryPaths(const std::string& argument,
-                                                const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> libraryPaths(const std::string& argument, const std::filesystem::path& folder) {
     const auto existing = [&](std::string name) -> std::filesystem::path {
         std::filesystem::path asWritten = folder / name;
         std::error_code error;
@@ -27,8 +26,7 @@ std::vector<std::filesystem::path> libraryPaths(const std::string& argument,
         return folder / name;
     };
     std::error_code error;
-    if (std::filesystem::path whole = existing(argument); std::filesystem::exists(whole, error))
-        return {whole};
+    if (std::filesystem::path whole = existing(argument); std::filesystem::exists(whole, error)) return {whole};
     std::vector<std::filesystem::path> paths;
     std::istringstream words(argument);
     for (std::string word; words >> word;) paths.push_back(existing(word));
@@ -54,11 +52,10 @@ void addLibrary(SceneBuilder& builder, const std::filesystem::path& path,
     std::string warnings, errors;
     tinyobj::LoadMtl(&numbers, &found, &stream, &warnings, &errors);
     for (const tinyobj::material_t& source : found) {
-        if (source.name.empty())
-            continue; // tinyobjloader ends every list with one of these, if not a real one
+        if (source.name.empty()) continue; // tinyobjloader ends every list with one of these, if not a real one
         if (materials.contains(source.name)) {
-            builder.warn(fmt::format("material {} is defined again in {}: the first counts",
-                                     inQuotes(source.name), path.string()));
+            builder.warn(fmt::format("material {} is defined again in {}: the first counts", inQuotes(source.name),
+                                     path.string()));
             continue;
         }
         Material material;
@@ -83,8 +80,8 @@ TinyObj loadTinyObj(const std::string& file, ObjText& checked) {
     std::istringstream nameStream(std::move(names));
     tinyobj::MaterialStreamReader nameReader(nameStream);
     std::istringstream stream("mtllib names\n" + std::exchange(checked.statements, {}));
-    if (!tinyobj::LoadObj(&result.attributes, &result.shapes, &materials, &warnings, &errors, &stream,
-                          &nameReader, false, false))
+    if (!tinyobj::LoadObj(&result.attributes, &result.shapes, &materials, &warnings, &errors, &stream, &nameReader,
+                          false, false))
         throw InputError(file + ": " + oneLine(errors));
     return result;
 }
@@ -116,8 +113,7 @@ void addPolygons(SceneBuilder& builder, const TinyObj& source, const ObjText& ch
         std::size_t begin = 0;
         for (std::size_t k = 0; k < shape.mesh.num_face_vertices.size(); ++k, ++face) {
             const auto wide = checked.wideFaces.find(face);
-            const std::size_t size =
-                wide != checked.wideFaces.end() ? wide->second : shape.mesh.num_face_vertices[k];
+            const std::size_t size = wide != checked.wideFaces.end() ? wide->second : shape.mesh.num_face_vertices[k];
             corners.clear();
             for (std::size_t c = 0; c < size; ++c)
                 corners.push_back(static_cast<std::uint32_t>(shape.mesh.indices[begin + c].vertex_index));
@@ -125,13 +121,11 @@ void addPolygons(SceneBuilder& builder, const TinyObj& source, const ObjText& ch
 
             const int number = shape.mesh.material_ids[k];
             const std::uint32_t material = materialTable.index(number, [&] {
-                const std::string name =
-                    number < 0 ? "default" : checked.materials[static_cast<std::size_t>(number)];
+                const std::string name = number < 0 ? "default" : checked.materials[static_cast<std::size_t>(number)];
                 const auto known = materials.find(name);
                 if (known != materials.end()) return known->second;
                 if (name != "default")
-                    builder.warn(
-                        fmt::format("material {} is not defined: its reflectance is 0.5", inQuotes(name)));
+                    builder.warn(fmt::format("material {} is not defined: its reflectance is 0.5", inQuotes(name)));
                 return materials.emplace(name, builder.addMaterial({.name = name})).first->second;
             });
             builder.addPolygon(corners, material, node);
@@ -143,9 +137,8 @@ void addPolygons(SceneBuilder& builder, const TinyObj& source, const ObjText& ch
 
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
     if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-        throw UsageError(
-            fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
-                        options.metresPerUnit));
+        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
+                                     options.metresPerUnit));
     const std::string file = path.string();
     ObjText checked = checkObj(file, readInputFile(path));
 
@@ -154,15 +147,13 @@ ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options
     std::vector<std::filesystem::path> libraries;
     for (const std::string& argument : checked.libraries)
         for (const std::filesystem::path& library : libraryPaths(argument, path.parent_path()))
-            if (std::find(libraries.begin(), libraries.end(), library) == libraries.end())
-                libraries.push_back(library);
+            if (std::find(libraries.begin(), libraries.end(), library) == libraries.end()) libraries.push_back(library);
     for (const std::filesystem::path& library : libraries) addLibrary(builder, library, materials);
 
     const TinyObj source = loadTinyObj(file, checked);
     const std::vector<float>& vertices = source.attributes.vertices;
     for (std::size_t k = 0; k + 2 < vertices.size(); k += 3)
-        builder.addPosition(glm::dvec3(vertices[k], vertices[k + 1], vertices[k + 2]) *
-                            options.metresPerUnit);
+        builder.addPosition(glm::dvec3(vertices[k], vertices[k + 1], vertices[k + 2]) * options.metresPerUnit);
     addPolygons(builder, source, checked, materials);
     if (checked.ignoredElements > 0)
         builder.warn(fmt::format("{} points or lines were ignored", checked.ignoredElements));

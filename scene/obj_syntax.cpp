@@ -48,8 +48,7 @@ private:
         } else if (line.keyword == "g" || line.keyword == "o") {
             writeName("g", line.rest.empty() ? "default" : line.rest, groupNumbers_, result_.groups);
         } else if (line.keyword == "usemtl") {
-            writeName("usemtl", line.rest.empty() ? "default" : line.rest, materialNumbers_,
-                      result_.materials);
+            writeName("usemtl", line.rest.empty() ? "default" : line.rest, materialNumbers_, result_.materials);
         } else if (line.keyword == "mtllib") {
             if (!line.rest.empty()) result_.libraries.emplace_back(line.rest);
         } else if (line.keyword == "p" || line.keyword == "l") {
@@ -98,8 +97,7 @@ private:
             const bool isIndex = error == std::errc{} && end == digits.data() + digits.size() && index != 0;
             const bool leftOut = part > 0 && digits.empty();
             if (part > 2 || !(isIndex || leftOut))
-                failAt(file_, line, reference,
-                       "a reference v, v/vt, v//vn or v/vt/vn of integers other than 0");
+                failAt(file_, line, reference, "a reference v, v/vt, v//vn or v/vt/vn of integers other than 0");
             if (part == 0) vertex = index;
             if (slash == std::string_view::npos) break;
             rest.remove_prefix(slash + 1);
@@ -123,8 +121,8 @@ private:
                        fmt::format("a vertex that exists: the file has {}", vertices_));
     }
 
-    void writeName(const char* keyword, std::string_view name,
-                   std::unordered_map<std::string, std::size_t>& numbers, std::vector<std::string>& names) {
+    void writeName(const char* keyword, std::string_view name, std::unordered_map<std::string, std::size_t>& numbers,
+                   std::vector<std::string>& names) {
         const auto [entry, isNew] = numbers.try_emplace(std::string(name), names.size());
         if (isNew) names.emplace_back(name);
         fmt::format_to(std::back_inserter(result_.statements), "{} {}\n", keyword, entry->second);
@@ -183,8 +181,7 @@ private:
         if (numbers.size() == 1) {
             writeColour(line.keyword, numbers[0]);
         } else if (numbers.size() == 3) {
-            result_.statements +=
-                fmt::format("{} {} {} {}\n", line.keyword, numbers[0], numbers[1], numbers[2]);
+            result_.statements += fmt::format("{} {} {} {}\n", line.keyword, numbers[0], numbers[1], numbers[2]);
         } else {
             failAt(file_, line.number, line.text, fmt::format("1 or 3 numbers after {}", line.keyword));
         }

@@ -24,11 +24,10 @@ bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v
 /// its chart is that of the quad's first half.
 void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t),
-                                scene.polygons.size()));
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.positions.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), scene.polygons.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), scene.positions.size()));
     if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
     for (const Polygon& polygon : scene.polygons) {
         const auto& v = polygon.vertices;
@@ -120,7 +119,8 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr)
-        throw SystemError(fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+        throw SystemError(
+            fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     impl_->embree = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->embree, RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
     if (!scene.polygons.empty()) attachPolygons(impl_->device, impl_->embree, scene);
@@ -143,8 +143,7 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
-               glm::dot(ray.direction, normal) < 0.0F};
+    return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, glm::dot(ray.direction, normal) < 0.0F};
 }
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {

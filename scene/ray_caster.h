@@ -10,7 +10,7 @@ namespace lambert {
 
 struct Ray {
     glm::vec3 origin;
-    glm::vec3 direction; //!< need not have unit length
+    glm::vec3 direction;       //!< need not have unit length
     float maxDistance = 1e30F; //!< in lengths of `direction`
 };
 

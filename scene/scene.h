@@ -25,9 +25,12 @@ struct Material {
 
 /// A triangle or a convex planar quad, its front counter-clockwise.
 struct Polygon {
-    std::array<std::uint32_t, 4> vertices{kNone, kNone, kNone, kNone}; //!< into Scene::positions; a triangle ends in kNone
-    std::uint32_t material = 0;                                        //!< into Scene::materials
-    std::uint32_t node = 0;                                            //!< into Scene::nodes
+    /// Into Scene::positions; a triangle ends in kNone.
+    std::array<std::uint32_t, 4> vertices{kNone, kNone, kNone, kNone};
+    std::uint32_t material = 0; //!< of the front, into Scene::materials
+    std::uint32_t node = 0;     //!< into Scene::nodes
+    /// Of the back; none: black. Set where scenes are prepared, see prepareScene.
+    std::uint32_t backMaterial = kNone;
 
     bool isQuad() const { return vertices[3] != kNone; }
     int size() const { return isQuad() ? 4 : 3; }

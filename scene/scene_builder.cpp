@@ -56,8 +56,7 @@ double offPlane(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
     for (const glm::dvec3& p : points) centroid += p;
     centroid /= static_cast<double>(points.size());
     double farthest = 0.0;
-    for (const glm::dvec3& p : points)
-        farthest = std::max(farthest, std::abs(glm::dot(p - centroid, normal)));
+    for (const glm::dvec3& p : points) farthest = std::max(farthest, std::abs(glm::dot(p - centroid, normal)));
     return farthest;
 }
 
@@ -67,8 +66,7 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
     const glm::dvec3 u = glm::normalize(glm::cross(helper, normal));
     const glm::dvec3 v = glm::cross(normal, u);
     std::vector<glm::dvec2> result;
-    for (const glm::dvec3& p : points)
-        result.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
+    for (const glm::dvec3& p : points) result.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
     return result;
 }
 
@@ -81,8 +79,7 @@ std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     auto& positions = result_.scene.positions;
     if (positions.size() >= kNone)
         throw InputError(fmt::format("{}: found more vertices than allowed ({})", file_, kNone));
-    positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y),
-                           static_cast<float>(metres.z));
+    positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y), static_cast<float>(metres.z));
     return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
@@ -94,9 +91,8 @@ std::uint32_t SceneBuilder::addMaterial(Material material) {
         changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {}", material.reflectance.x,
                               material.reflectance.y, material.reflectance.z, kMaxReflectance);
     if (emittedRadiance != material.emittedRadiance)
-        changes +=
-            fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
-                        material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
+        changes += fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
+                               material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
     if (!changes.empty()) warn(fmt::format("material {}: {}", inQuotes(material.name), changes));
 
     material.reflectance = reflectance;
@@ -115,8 +111,7 @@ void SceneBuilder::addCamera(Camera camera) { result_.scene.cameras.push_back(st
 
 void SceneBuilder::warn(const std::string& text) { result_.report.warnings.push_back(file_ + ": " + text); }
 
-void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material,
-                              std::uint32_t node) {
+void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node) {
     ReadReport& report = result_.report;
     const auto& positions = result_.scene.positions;
     ++report.inputPolygons;
@@ -202,12 +197,10 @@ ReadResult SceneBuilder::finish() {
         if (report.inputPolygons == 0) throw InputError(file_ + ": found no polygons, expected at least one");
         throw InputError(fmt::format("{}: found no usable polygon among {}: {} with a coordinate that is not "
                                      "finite, {} without area",
-                                     file_, report.inputPolygons, report.nonFinitePolygons,
-                                     report.degeneratePolygons));
+                                     file_, report.inputPolygons, report.nonFinitePolygons, report.degeneratePolygons));
     }
     if (fans_ > 0)
-        warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles",
-                         fans_));
+        warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
     return std::exchange(result_, {});
 }
 

@@ -15,8 +15,8 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     if (extension == ".obj") return readObj(path, options);
     if (extension == ".gltf" || extension == ".glb") return readGltf(path, options);
-    throw InputError(fmt::format("{}: found the extension {}, allowed are .obj, .gltf and .glb",
-                                 path.string(), inQuotes(path.extension().string())));
+    throw InputError(fmt::format("{}: found the extension {}, allowed are .obj, .gltf and .glb", path.string(),
+                                 inQuotes(path.extension().string())));
 }
 
 } // namespace lambert

@@ -27,7 +27,8 @@ void gather(const FormFactorMatrix& matrix, const std::vector<RgbSum>& radiosity
 /// Area-weighted, over all channels.
 double squaredNorm(const PatchMesh& mesh, const std::vector<RgbSum>& values) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < mesh.size(); ++i) sum += static_cast<double>(mesh.area[i]) * glm::dot(values[i], values[i]);
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        sum += static_cast<double>(mesh.area[i]) * glm::dot(values[i], values[i]);
     return sum;
 }
 
@@ -66,8 +67,7 @@ RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& mat
     return solution;
 }
 
-EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matrix,
-                            const RadiositySolution& solution) {
+EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matrix, const RadiositySolution& solution) {
     EnergyBalance energy;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const auto area = static_cast<double>(mesh.area[i]);

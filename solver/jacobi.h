@@ -21,7 +21,6 @@ RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& mat
                               Progress& progress);
 
 /// All terms of the energy balance of a solution, each from its own definition.
-EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matrix,
-                            const RadiositySolution& solution);
+EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matrix, const RadiositySolution& solution);
 
 } // namespace lambert

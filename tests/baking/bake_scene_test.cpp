@@ -37,7 +37,8 @@ TEST(BakeScene, FacesOfTheBakedMeshAreThePatches) {
     for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
         EXPECT_EQ(baked.baked.isQuad(i), baked.mesh.isQuad(i));
         for (int k = 0; k < baked.mesh.cornerCount(i); ++k)
-            EXPECT_EQ(baked.baked.positions[baked.baked.faces[i][static_cast<std::size_t>(k)]], baked.mesh.position(i, k));
+            EXPECT_EQ(baked.baked.positions[baked.baked.faces[i][static_cast<std::size_t>(k)]],
+                      baked.mesh.position(i, k));
     }
 }
 
@@ -60,7 +61,8 @@ TEST(BakeScene, DarknessUnderAnObjectDoesNotReachTheFloorAroundIt) {
                 EXPECT_LT(mesh.irradiance[vertex].x, 1e-6F);
                 ++contactVertices;
             } else {
-                EXPECT_GT(mesh.irradiance[vertex].x, 0.05F); // the darkest corner sees at least 1/20 of the lamp's light
+                EXPECT_GT(mesh.irradiance[vertex].x,
+                          0.05F); // the darkest corner sees at least 1/20 of the lamp's light
             }
         }
     }
@@ -82,7 +84,8 @@ TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
     Scene scene = roomWithBoxScene();
     scene.polygons.resize(6);
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    for (const glm::vec3 p : {glm::vec3(0.5F, 0.5F, 1), glm::vec3(1.5F, 0.5F, 1), glm::vec3(1.5F, 1.5F, 1), glm::vec3(0.5F, 1.5F, 1)})
+    for (const glm::vec3 p :
+         {glm::vec3(0.5F, 0.5F, 1), glm::vec3(1.5F, 0.5F, 1), glm::vec3(1.5F, 1.5F, 1), glm::vec3(0.5F, 1.5F, 1)})
         scene.positions.push_back(p);
     scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
     scene.materials[6].twoSided = true;
@@ -91,10 +94,26 @@ TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
     double back = 0.0;
     for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
         if (baked.mesh.material[i] != 6) continue;
-        (baked.mesh.isBack(i) ? back : front) += static_cast<double>(baked.mesh.area[i]) * baked.solution.irradiance[i].x;
+        (baked.mesh.isBack(i) ? back : front) +=
+            static_cast<double>(baked.mesh.area[i]) * baked.solution.irradiance[i].x;
     }
     EXPECT_GT(front, 2.0 * back); // the lamp is above
     EXPECT_GT(back, 0.05);
+    EXPECT_EQ(baked.rows.backFaceFraction, 0.0);
+}
+
+TEST(BakeScene, TwoSheetsBackToBackAreLitLikeOneOfTwoSides) {
+    const std::array<Quad, 3> quads{{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
+                                     {{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}},
+                                     {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}}}};
+    const std::array materials{greyMaterial("above", 0.5F), greyMaterial("below", 0.5F),
+                               greyMaterial("lamp", 0.5F, 1.0F)};
+    const BakedScene baked = bake(quadScene(quads, materials), 200, 64);
+    std::array<double, 3> flux{};
+    for (std::size_t i = 0; i < baked.mesh.size(); ++i)
+        flux[baked.mesh.material[i]] += static_cast<double>(baked.mesh.area[i]) * baked.solution.irradiance[i].x;
+    EXPECT_NEAR(flux[0], 0.2, 0.02); // C-11: 0.19982, and what comes back
+    EXPECT_EQ(flux[1], 0.0);
     EXPECT_EQ(baked.rows.backFaceFraction, 0.0);
 }
 
@@ -125,8 +144,8 @@ TEST(Probe, PointOnASurfaceIsInterpolatedAndPointInSpaceIsGathered) {
 }
 
 TEST(Probe, PointUnderATwoSidedSheetReadsTheSideItFaces) {
-    const std::array<Quad, 2> quads{{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
-                                     {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}}}};
+    const std::array<Quad, 2> quads{
+        {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}}}};
     std::array materials{greyMaterial("sheet", 0.5F), greyMaterial("lamp", 0.5F, 1.0F)};
     materials[0].twoSided = true;
     const BakedScene baked = bake(quadScene(quads, materials), 200, 32);

@@ -16,8 +16,8 @@ BakedMesh strip(const std::vector<std::pair<float, float>>& widthsAndValues) {
     float x = 0.0F;
     for (const auto& [width, value] : widthsAndValues) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-        for (const glm::vec3& p : {glm::vec3(x, 0, 0), glm::vec3(x + width, 0, 0), glm::vec3(x + width, 1, 0),
-                                   glm::vec3(x, 1, 0)}) {
+        for (const glm::vec3& p :
+             {glm::vec3(x, 0, 0), glm::vec3(x + width, 0, 0), glm::vec3(x + width, 1, 0), glm::vec3(x, 1, 0)}) {
             mesh.positions.push_back(p);
             mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
             mesh.radiosity.push_back(Rgb(0.5F, 1.0F, 0.25F) * value * glm::pi<float>());
@@ -37,8 +37,7 @@ float shownAt(const BakedMesh& mesh, float value, Quantity quantity = Quantity::
 constexpr float kRounding = 1e-5F; // a few units in the last place of a float EV
 
 TEST(AutomaticExposure, MakesPercentileNinetyPercentOfDisplay) {
-    EXPECT_NEAR(shownAt(strip({{50.0F, 1.0F}, {48.5F, 2.0F}, {1.0F, 5.0F}, {0.5F, 80.0F}}), 5.0F), 0.9F,
-                kRounding);
+    EXPECT_NEAR(shownAt(strip({{50.0F, 1.0F}, {48.5F, 2.0F}, {1.0F, 5.0F}, {0.5F, 80.0F}}), 5.0F), 0.9F, kRounding);
     EXPECT_NEAR(shownAt(strip({{1.0F, 3e-8F}}), 3e-8F), 0.9F, kRounding);
     EXPECT_NEAR(shownAt(strip({{1.0F, 3e8F}}), 3e8F), 0.9F, kRounding * 10.0F);
 }

@@ -147,8 +147,7 @@ TEST(InterpolationWeights, StayValidOutsideAndOnDegeneratePatches) {
         for (const glm::vec2& far : {glm::vec2(-5, -5), glm::vec2(9, 0), glm::vec2(0.5F, 20)})
             expectPartitionOfUnity(interpolationWeights(onePatch(placed(quad)), 0, place(far)));
     expectPartitionOfUnity(interpolationWeights(onePatch({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}), 0, {1, 1, 1}));
-    expectPartitionOfUnity(
-        interpolationWeights(onePatch({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}), 0, {1, 1, 1}));
+    expectPartitionOfUnity(interpolationWeights(onePatch({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}), 0, {1, 1, 1}));
 }
 
 } // namespace

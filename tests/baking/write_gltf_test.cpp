@@ -18,9 +18,8 @@ tinygltf::Model readBack(const std::filesystem::path& path) {
     tinygltf::TinyGLTF reader;
     std::string error;
     std::string warning;
-    const bool read = path.extension() == ".glb"
-                          ? reader.LoadBinaryFromFile(&model, &error, &warning, path.string())
-                          : reader.LoadASCIIFromFile(&model, &error, &warning, path.string());
+    const bool read = path.extension() == ".glb" ? reader.LoadBinaryFromFile(&model, &error, &warning, path.string())
+                                                 : reader.LoadASCIIFromFile(&model, &error, &warning, path.string());
     EXPECT_TRUE(read) << error;
     EXPECT_EQ(warning, "");
     return model;
@@ -100,8 +99,7 @@ TEST_P(GltfWriter, ColoursAreTheExposedQuantity) {
 
 TEST(GltfWriterDetails, SplitsQuadsWhereLightChangesLess) {
     // The wall's radiosity is nearly the same at its corners 0 and 2.
-    const tinygltf::Model model =
-        written(test::sampleMesh(), "split.glb", optionsOf(Quantity::Radiosity, 0.0F));
+    const tinygltf::Model model = written(test::sampleMesh(), "split.glb", optionsOf(Quantity::Radiosity, 0.0F));
     const tinygltf::Primitive& wall = model.meshes[0].primitives[0];
     const auto positions = elements<glm::vec3>(model, wall.attributes.at("POSITION"));
     const auto indices = elements<std::uint32_t>(model, wall.indices);
@@ -111,8 +109,7 @@ TEST(GltfWriterDetails, SplitsQuadsWhereLightChangesLess) {
 }
 
 TEST(GltfWriterDetails, KeepsOrientation) {
-    const tinygltf::Model model =
-        written(test::sampleMesh(), "orientation.glb", optionsOf(Quantity::Radiosity, 0.0F));
+    const tinygltf::Model model = written(test::sampleMesh(), "orientation.glb", optionsOf(Quantity::Radiosity, 0.0F));
     float area = 0.0F;
     for (const tinygltf::Primitive& primitive : model.meshes[0].primitives) {
         const auto positions = elements<glm::vec3>(model, primitive.attributes.at("POSITION"));
@@ -129,8 +126,7 @@ TEST(GltfWriterDetails, KeepsOrientation) {
 }
 
 TEST(GltfWriterDetails, SaysHowToReadIt) {
-    const tinygltf::Model model =
-        written(test::sampleMesh(), "asset.gltf", optionsOf(Quantity::Irradiance, 2.5F));
+    const tinygltf::Model model = written(test::sampleMesh(), "asset.gltf", optionsOf(Quantity::Irradiance, 2.5F));
     EXPECT_EQ(model.asset.version, "2.0");
     EXPECT_EQ(model.asset.generator, "Lambert 1.2.3");
     EXPECT_EQ(model.asset.extras.Get("exposure_ev").GetNumberAsDouble(), 2.5);
@@ -142,8 +138,7 @@ TEST(GltfWriterDetails, SaysHowToReadIt) {
         EXPECT_FALSE(material.doubleSided);
     }
     const tinygltf::Primitive& wall = model.meshes[0].primitives[0];
-    const tinygltf::Accessor& positions =
-        model.accessors[static_cast<std::size_t>(wall.attributes.at("POSITION"))];
+    const tinygltf::Accessor& positions = model.accessors[static_cast<std::size_t>(wall.attributes.at("POSITION"))];
     EXPECT_EQ(positions.minValues, (std::vector<double>{0, 0, 0}));
     EXPECT_EQ(positions.maxValues, (std::vector<double>{0.5, 1, 0}));
 }

@@ -69,34 +69,31 @@ void expectPly(const std::string& bytes, Quantity quantity) {
 
 TEST(PlyWriter, HeaderNamesWhatFollows) {
     const std::string bytes = written("header.ply", Quantity::Radiosity);
-    EXPECT_EQ(bytes.substr(0, bytes.find("end_header")),
-              "ply\n"
-              "format binary_little_endian 1.0\n"
-              "comment Lambert 1.2.3\n"
-              "comment metres; red green blue = sRGB of "
-              "clamp(B/pi * 2^exposure_ev)\n"
-              "comment exposure_ev 1\n"
-              "comment radiosity_r g b: B per m2, linear, Rec. 709\n"
-              "element vertex 9\n"
-              "property float x\n"
-              "property float y\n"
-              "property float z\n"
-              "property float nx\n"
-              "property float ny\n"
-              "property float nz\n"
-              "property uchar red\n"
-              "property uchar green\n"
-              "property uchar blue\n"
-              "property float radiosity_r\n"
-              "property float radiosity_g\n"
-              "property float radiosity_b\n"
-              "element face 3\n"
-              "property list uchar uint vertex_indices\n");
+    EXPECT_EQ(bytes.substr(0, bytes.find("end_header")), "ply\n"
+                                                         "format binary_little_endian 1.0\n"
+                                                         "comment Lambert 1.2.3\n"
+                                                         "comment metres; red green blue = sRGB of "
+                                                         "clamp(B/pi * 2^exposure_ev)\n"
+                                                         "comment exposure_ev 1\n"
+                                                         "comment radiosity_r g b: B per m2, linear, Rec. 709\n"
+                                                         "element vertex 9\n"
+                                                         "property float x\n"
+                                                         "property float y\n"
+                                                         "property float z\n"
+                                                         "property float nx\n"
+                                                         "property float ny\n"
+                                                         "property float nz\n"
+                                                         "property uchar red\n"
+                                                         "property uchar green\n"
+                                                         "property uchar blue\n"
+                                                         "property float radiosity_r\n"
+                                                         "property float radiosity_g\n"
+                                                         "property float radiosity_b\n"
+                                                         "element face 3\n"
+                                                         "property list uchar uint vertex_indices\n");
 }
 
-TEST(PlyWriter, KeepsFloatsAndQuads) {
-    expectPly(written("radiosity.ply", Quantity::Radiosity), Quantity::Radiosity);
-}
+TEST(PlyWriter, KeepsFloatsAndQuads) { expectPly(written("radiosity.ply", Quantity::Radiosity), Quantity::Radiosity); }
 
 TEST(PlyWriter, AddsIrradianceWhenThatIsTheQuantity) {
     const std::string bytes = written("irradiance.ply", Quantity::Irradiance);

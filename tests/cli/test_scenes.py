@@ -30,18 +30,19 @@ class OtherPeoplesScenes(ProgramTest):
         self.assertGreater(self.info(SCENES / "conference" / "conference.obj")["triangles"], 200_000)
 
     def test_cornell_boxes_bake(self):
-        # 32-pixel hemicubes lose 1.2 % in the plain box; its thin lamp and curved objects have smaller patches.
+        # Measured with 32-pixel hemicubes: up to 2.5 %. Walls that are not refined at all would make it 30 %.
         boxes = sorted((SCENES / "cornell_mcguire").glob("*.obj"))
         self.assertTrue(boxes)
         for scene in boxes:
             with self.subTest(scene.name):
-                self.assert_sane(scene, 0.05, "--patches", "2000", "--resolution", "32")
+                self.assert_sane(scene, 0.05, "--resolution", "32")
 
     def test_holodeck_bakes(self):
-        self.assert_sane(SCENES / "holodeck" / "holodeck.obj", 0.05, "--patches", "2000", "--resolution", "32")
+        self.assert_sane(SCENES / "holodeck" / "holodeck.obj", 0.05, "--resolution", "32")
 
     def test_staircase_bakes(self):
-        self.assert_sane(SCENES / "staircase" / "staircase.obj", 0.1, "--resolution", "16")
+        # Measured: 1 % with 16-pixel hemicubes.
+        self.assert_sane(SCENES / "staircase" / "staircase.obj", 0.05, "--resolution", "16")
 
 
 if __name__ == "__main__":

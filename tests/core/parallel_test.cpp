@@ -85,8 +85,7 @@ TEST_P(ParallelFor, MayBeNested) {
     for (const std::atomic<int>& count : visited) ASSERT_EQ(count, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(WithThreads, ParallelFor, testing::Values(1, 2, 8),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(WithThreads, ParallelFor, testing::Values(1, 2, 8), testing::PrintToStringParamName());
 
 TEST(ThreadCount, IsWhatWasSetAndAtLeastOneByDefault) {
     setThreadCount(3);

@@ -21,8 +21,7 @@ double signedArea(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c)
 
 double borderArea(const Points& points, std::size_t borderCount) {
     double area = 0.0;
-    for (std::size_t i = 0; i < borderCount; ++i)
-        area += signedArea({0, 0}, points[i], points[(i + 1) % borderCount]);
+    for (std::size_t i = 0; i < borderCount; ++i) area += signedArea({0, 0}, points[i], points[(i + 1) % borderCount]);
     return area;
 }
 
@@ -134,8 +133,8 @@ TEST(TriangulatePolygon, DividesALineThatPassesThroughAPoint) {
 
 TEST(TriangulatePolygon, RefusesLinesThatCross) {
     EXPECT_FALSE(triangulatePolygon(kSquare, 4, Lines{{0, 2}, {1, 3}}).has_value());
-    EXPECT_FALSE(triangulatePolygon(squareWith({{1, 1}, {3, 3}, {1, 3}, {3, 1}}), 4, Lines{{4, 5}, {6, 7}})
-                     .has_value());
+    EXPECT_FALSE(
+        triangulatePolygon(squareWith({{1, 1}, {3, 3}, {1, 3}, {3, 1}}), 4, Lines{{4, 5}, {6, 7}}).has_value());
 }
 
 TEST(TriangulatePolygon, RefusesALineAcrossTheBorder) {

@@ -24,8 +24,7 @@ std::string contentOf(const fs::path& path) {
 
 std::vector<std::string> namesIn(const fs::path& folder) {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder))
-        names.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -141,8 +140,7 @@ TEST(RequireWritable, AcceptsNewAndOldFiles) {
 
 TEST(RequireWritable, RefusesFoldersAndMissingFolders) {
     const TemporaryFolder folder;
-    EXPECT_NE(failureOf([&] { requireWritable(folder.path()); }).find(folder.path().string()),
-              std::string::npos);
+    EXPECT_NE(failureOf([&] { requireWritable(folder.path()); }).find(folder.path().string()), std::string::npos);
     failureOf([&] { requireWritable(folder.path() / "missing" / "a.txt"); });
     folder.write("file", "");
     failureOf([&] { requireWritable(folder.path() / "file" / "a.txt"); });

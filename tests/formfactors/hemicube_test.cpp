@@ -53,15 +53,15 @@ Scene greyBox(const glm::vec3& size) {
 
 /// Two a × b rectangles that face each other at distance c.
 Scene parallelRectangles(float a, float b, float c) {
-    const std::array<Quad, 2> quads{{{{{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}}},
-                                     {{{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}}}}};
+    const std::array<Quad, 2> quads{
+        {{{{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}}}, {{{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}}}}};
     return quadScene(quads, std::array{greyMaterial("one", 0.5F, 1.0F), greyMaterial("two", 0.5F)});
 }
 
 /// A w × l rectangle on the floor and an h × l one that stands on its edge of length l.
 Scene perpendicularRectangles(float w, float h, float l) {
-    const std::array<Quad, 2> quads{{{{{0, 0, 0}, {w, 0, 0}, {w, l, 0}, {0, l, 0}}},
-                                     {{{0, 0, 0}, {0, l, 0}, {0, l, h}, {0, 0, h}}}}};
+    const std::array<Quad, 2> quads{
+        {{{{0, 0, 0}, {w, 0, 0}, {w, l, 0}, {0, l, 0}}}, {{{0, 0, 0}, {0, l, 0}, {0, l, h}, {0, 0, h}}}}};
     return quadScene(quads, std::array{greyMaterial("one", 0.5F, 1.0F), greyMaterial("two", 0.5F)});
 }
 

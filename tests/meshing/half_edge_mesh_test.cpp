@@ -88,8 +88,7 @@ TEST(HalfEdgeMesh, BreaksAtTheEdgesOfABox) {
 }
 
 TEST(HalfEdgeMesh, BreaksBetweenMaterials) {
-    const Face faces[]{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
-                       {{{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}}};
+    const Face faces[]{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, {{{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}}};
     Scene scene = facesScene(faces);
     const PatchMesh same = meshWithLength(scene, 0.5);
     EXPECT_EQ(neighbours(same, buildHalfEdgeMesh(same, kCrease).topology, 0), std::set<std::uint32_t>{1});
@@ -128,7 +127,7 @@ TEST(HalfEdgeMesh, BreaksTheSideOnWhichSomethingStands) {
                            {{{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}},
                            {{{1, 0, 0}, {1, 1, 0}, {1, 1, top}, {1, 0, top}}}};
         Scene scene = facesScene(faces);
-        scene.materials[0].twoSided = true;
+        for (Polygon& polygon : scene.polygons) polygon.backMaterial = polygon.material;
         const PatchMesh mesh = meshWithLength(scene, 0.5);
         const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
         expectFacesArePatches(mesh, halfEdges.topology);
@@ -159,8 +158,7 @@ TEST(HalfEdgeMesh, IsSmoothAroundACylinderWithinTheCreaseAngle) {
 
 TEST(HalfEdgeMesh, KeepsSheetsBackToBackApartAndSmooth) {
     // The same square twice, facing up and facing down.
-    const Face faces[]{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
-                       {{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}}};
+    const Face faces[]{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, {{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}}};
     const Scene scene = facesScene(faces);
     const PatchMesh mesh = meshWithLength(scene, 0.25);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
@@ -172,7 +170,7 @@ TEST(HalfEdgeMesh, KeepsSheetsBackToBackApartAndSmooth) {
 
 TEST(HalfEdgeMesh, GivesBacksOfTwoSidedPolygonsTheirOwnVertices) {
     Scene scene = flatScene(std::array<glm::vec2, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
-    scene.materials[0].twoSided = true;
+    for (Polygon& polygon : scene.polygons) polygon.backMaterial = polygon.material;
     const PatchMesh mesh = meshWithLength(scene, 0.25);
     ASSERT_EQ(mesh.size(), 32U);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);

@@ -57,9 +57,8 @@ Scene triangleSoup(std::uint32_t seed, int count, float size, float grid) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
     const auto snap = [grid](glm::vec3 p) {
-        return grid > 0.0F
-                   ? glm::vec3(std::round(p.x / grid), std::round(p.y / grid), std::round(p.z / grid)) * grid
-                   : p;
+        return grid > 0.0F ? glm::vec3(std::round(p.x / grid), std::round(p.y / grid), std::round(p.z / grid)) * grid
+                           : p;
     };
     Scene scene = emptyScene();
     scene.materials.push_back(scene.materials[0]);
@@ -112,8 +111,7 @@ TEST(HostileScene, NeedlesAndNearlyEqualVertices) {
 TEST(HostileScene, DuplicatedPolygons) {
     Scene scene = roomWithTurnedBox();
     const std::vector<Polygon> polygons = scene.polygons;
-    for (int copy = 0; copy < 3; ++copy)
-        scene.polygons.insert(scene.polygons.end(), polygons.begin(), polygons.end());
+    for (int copy = 0; copy < 3; ++copy) scene.polygons.insert(scene.polygons.end(), polygons.begin(), polygons.end());
     expectSurvives(scene);
 }
 
@@ -142,10 +140,9 @@ TEST(HostileScene, SheetsThatOverlapInOnePlane) {
         for (int i = 0; i < 12; ++i) {
             const glm::vec2 lower(uniform(random), uniform(random));
             const glm::vec2 upper = lower + glm::vec2(uniform(random) + 0.1F, uniform(random) + 0.1F);
-            addPolygon(scene, Quad{{{lower.x, lower.y, 0},
-                                    {upper.x, lower.y, 0},
-                                    {upper.x, upper.y, 0},
-                                    {lower.x, upper.y, 0}}});
+            addPolygon(
+                scene,
+                Quad{{{lower.x, lower.y, 0}, {upper.x, lower.y, 0}, {upper.x, upper.y, 0}, {lower.x, upper.y, 0}}});
         }
         expectSurvives(scene);
         expectSurvives(turned(scene));

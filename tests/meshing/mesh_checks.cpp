@@ -30,8 +30,7 @@ std::vector<glm::dvec3> cornersOf(const Scene& scene, const Polygon& polygon) {
 }
 
 glm::dvec3 exactAreaVector(const std::vector<glm::dvec3>& p) {
-    return 0.5 *
-           (p.size() == 4 ? glm::cross(p[2] - p[0], p[3] - p[1]) : glm::cross(p[1] - p[0], p[2] - p[0]));
+    return 0.5 * (p.size() == 4 ? glm::cross(p[2] - p[0], p[3] - p[1]) : glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 
 std::vector<double> edgeLengths(const std::vector<glm::dvec3>& p) {
@@ -47,8 +46,7 @@ double outside(const std::vector<glm::dvec3>& p, const glm::dvec3& point) {
     for (std::size_t k = 0; k < p.size(); ++k) {
         const glm::dvec3 edge = p[(k + 1) % p.size()] - p[k];
         const double length = glm::length(edge);
-        if (length > 0.0)
-            distance = std::max(distance, glm::dot(glm::cross(edge, normal), point - p[k]) / length);
+        if (length > 0.0) distance = std::max(distance, glm::dot(glm::cross(edge, normal), point - p[k]) / length);
     }
     return distance;
 }
@@ -113,14 +111,13 @@ double shortestEdge(const PatchMesh& mesh, std::size_t patch) {
 void expectSoundMesh(const Scene& scene, const PatchMesh& mesh) {
     const std::size_t count = mesh.size();
     ASSERT_LE(mesh.frontCount, count);
-    for (const std::size_t size :
-         {mesh.centroid.size(), mesh.normal.size(), mesh.area.size(), mesh.reflectance.size(),
-          mesh.emittedRadiosity.size(), mesh.polygon.size(), mesh.material.size()})
+    for (const std::size_t size : {mesh.centroid.size(), mesh.normal.size(), mesh.area.size(), mesh.reflectance.size(),
+                                   mesh.emittedRadiosity.size(), mesh.polygon.size(), mesh.material.size()})
         ASSERT_EQ(size, count);
-    EXPECT_TRUE(std::is_sorted(mesh.polygon.begin(),
-                               mesh.polygon.begin() + static_cast<std::ptrdiff_t>(mesh.frontCount)));
-    EXPECT_TRUE(std::is_sorted(mesh.polygon.begin() + static_cast<std::ptrdiff_t>(mesh.frontCount),
-                               mesh.polygon.end()));
+    EXPECT_TRUE(
+        std::is_sorted(mesh.polygon.begin(), mesh.polygon.begin() + static_cast<std::ptrdiff_t>(mesh.frontCount)));
+    EXPECT_TRUE(
+        std::is_sorted(mesh.polygon.begin() + static_cast<std::ptrdiff_t>(mesh.frontCount), mesh.polygon.end()));
 
     const double rounding = coordinateRounding(scene);
     std::vector<double> covered(scene.polygons.size(), 0.0);
@@ -130,9 +127,8 @@ void expectSoundMesh(const Scene& scene, const PatchMesh& mesh) {
         expectSoundPatch(scene, mesh, patch, rounding);
         covered[mesh.polygon[patch]] += static_cast<double>(mesh.area[patch]);
         const std::uint32_t expectedBack =
-            scene.materials[mesh.material[patch]].twoSided ? static_cast<std::uint32_t>(back++) : kNone;
-        ASSERT_EQ(mesh.lookup.backPatch(mesh.polygon[patch], static_cast<std::uint32_t>(patch)),
-                  expectedBack);
+            scene.polygons[mesh.polygon[patch]].backMaterial != kNone ? static_cast<std::uint32_t>(back++) : kNone;
+        ASSERT_EQ(mesh.lookup.backPatch(mesh.polygon[patch], static_cast<std::uint32_t>(patch)), expectedBack);
         if (expectedBack == kNone) continue;
         ASSERT_LT(expectedBack, count);
         expectSoundPatch(scene, mesh, expectedBack, rounding);
@@ -162,8 +158,7 @@ void expectNoTVertex(const Scene& scene, const PatchMesh& mesh) {
     for (std::size_t patch = 0; patch < mesh.frontCount; ++patch)
         for (int k = 0; k < mesh.cornerCount(patch); ++k) {
             const std::uint32_t a = mesh.corners[patch][static_cast<std::size_t>(k)];
-            const std::uint32_t b =
-                mesh.corners[patch][static_cast<std::size_t>((k + 1) % mesh.cornerCount(patch))];
+            const std::uint32_t b = mesh.corners[patch][static_cast<std::size_t>((k + 1) % mesh.cornerCount(patch))];
             used[a].push_back(mesh.polygon[patch]);
             edges[std::minmax(a, b)].push_back(mesh.polygon[patch]);
         }
@@ -181,10 +176,8 @@ void expectNoTVertex(const Scene& scene, const PatchMesh& mesh) {
             const glm::dvec3 offset = glm::dvec3(mesh.positions[vertex]) - from;
             const double t = glm::dot(offset, edge) / squaredLength;
             if (t <= 0.0 || t >= 1.0 || glm::length(offset - t * edge) > tolerance) continue;
-            if (inner && std::find(polygons.begin(), polygons.end(), edgePolygons[0]) == polygons.end())
-                continue;
-            ADD_FAILURE() << "vertex " << vertex << " lies on the edge from " << a << " to " << b << ", at "
-                          << t;
+            if (inner && std::find(polygons.begin(), polygons.end(), edgePolygons[0]) == polygons.end()) continue;
+            ADD_FAILURE() << "vertex " << vertex << " lies on the edge from " << a << " to " << b << ", at " << t;
             return;
         }
     }
@@ -198,8 +191,7 @@ void expectClosed(const PatchMesh& mesh) {
                     mesh.corners[patch][static_cast<std::size_t>((k + 1) % mesh.cornerCount(patch))]}];
     for (const auto& [edge, count] : runs) {
         ASSERT_EQ(count, 1) << "patches that run from " << edge.first << " to " << edge.second;
-        ASSERT_TRUE(runs.contains({edge.second, edge.first}))
-            << "open edge " << edge.first << "–" << edge.second;
+        ASSERT_TRUE(runs.contains({edge.second, edge.first})) << "open edge " << edge.first << "–" << edge.second;
     }
 }
 

@@ -94,8 +94,7 @@ TEST_P(PatchLookupOf, Answers16AtOnceAsOneByOne) {
             for (int lane = 0; lane < 16; ++lane) {
                 const std::uint32_t expected =
                     polygon[lane] == kNone ? 12345678 : mesh.lookup.patchAt(polygon[lane], u[lane], v[lane]);
-                ASSERT_EQ(patch[lane], expected)
-                    << "polygon " << polygon[lane] << " at " << u[lane] << ", " << v[lane];
+                ASSERT_EQ(patch[lane], expected) << "polygon " << polygon[lane] << " at " << u[lane] << ", " << v[lane];
             }
         }
     }
@@ -115,8 +114,7 @@ TEST_P(PatchLookupOf, StaysWithinThePolygonOnItsBorderAndALittleOutside) {
                     ASSERT_LT(patch, end) << u << ", " << v;
                     const double outside = distanceOutside(mesh, patch, polygonPoint(scene(), i, u, v));
                     const auto size = static_cast<double>(boundsOf(scene()).diagonal());
-                    EXPECT_LE(outside, 1e-4 * longestEdge(mesh, patch) + 4e-6 * size)
-                        << i << ": " << u << ", " << v;
+                    EXPECT_LE(outside, 1e-4 * longestEdge(mesh, patch) + 4e-6 * size) << i << ": " << u << ", " << v;
                     std::uint32_t polygons[16], found[16];
                     float us[16], vs[16];
                     std::fill_n(polygons, 16, i);
@@ -137,10 +135,8 @@ TEST_P(PatchLookupOf, FindsEachPatchAtItsCentroid) {
         std::size_t other = 0;
         for (std::uint32_t patch = 0; patch < mesh.frontCount; ++patch) {
             // Far above what the plane of a sliver is off in the caster's float.
-            const float above =
-                std::max(1e-3F * std::sqrt(mesh.area[patch]), 1e-4F * caster.bounds().diagonal());
-            const auto hit =
-                caster.closest({mesh.centroid[patch] + above * mesh.normal[patch], -mesh.normal[patch]});
+            const float above = std::max(1e-3F * std::sqrt(mesh.area[patch]), 1e-4F * caster.bounds().diagonal());
+            const auto hit = caster.closest({mesh.centroid[patch] + above * mesh.normal[patch], -mesh.normal[patch]});
             if (!hit || hit->polygon != mesh.polygon[patch]) {
                 ++other; // another face lies on this one
                 continue;
@@ -205,10 +201,8 @@ TEST(PatchLookup, FindsThePatchInManyRandomQuads) {
 
 TEST(PatchLookup, FindsBackPatchesOnlyOfTwoSidedPolygons) {
     Scene scene = roomWithTurnedBox();
-    scene.materials.push_back(scene.materials[0]);
-    scene.materials.back().twoSided = true;
-    scene.polygons[2].material = 1;
-    scene.polygons[5].material = 1;
+    scene.polygons[2].backMaterial = 0;
+    scene.polygons[5].backMaterial = 0;
     const PatchMesh mesh = meshWithLength(scene, 0.3);
     std::uint32_t next = static_cast<std::uint32_t>(mesh.frontCount);
     for (std::uint32_t patch = 0; patch < mesh.frontCount; ++patch) {

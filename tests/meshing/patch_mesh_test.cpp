@@ -22,7 +22,7 @@ protected:
 };
 
 TEST_P(PatchMeshOf, IsSoundAtEveryScaleAndLength) {
-    for (const float scale : {1e-3F, 1.0F, 1e3F}) {
+    for (const float scale : {1e-8F, 1e-3F, 1.0F, 1e3F, 1e8F}) {
         const Scene scene = scaled(GetParam().scene, scale);
         for (const double length : lengths(scene)) {
             SCOPED_TRACE(testing::Message() << "scale " << scale << ", patch length " << length);
@@ -53,8 +53,7 @@ TEST_P(PatchMeshOf, DividesBordersToThePatchLength) {
         // Inner edges of a triangulation may be longer: the diagonal of a lattice square, stretched next to
         // the border by up to one and a half clearances on either side.
         double longest = 0.0;
-        for (std::size_t patch = 0; patch < mesh.size(); ++patch)
-            longest = std::max(longest, longestEdge(mesh, patch));
+        for (std::size_t patch = 0; patch < mesh.size(); ++patch) longest = std::max(longest, longestEdge(mesh, patch));
         EXPECT_LE(longest, 2.1 * length);
         RecordProperty("longest_edge", std::to_string(longest / length));
         // Each edge is divided into equal parts, of which a thousandth more is allowed.
@@ -95,8 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, PatchMeshOf, testing::ValuesIn(sampleScenes())
 
 TEST(BuildPatchMesh, MakesAboutAsManyPatchesAsWanted) {
     std::vector<std::pair<std::string, Scene>> scenes{{"room with a box", roomWithTurnedBox()}};
-    for (const char* name :
-         {"cornell_box.obj", "room432.obj", "furnace_box.obj", "table_room.gltf", "tetrahedron.obj"})
+    for (const char* name : {"cornell_box.obj", "room432.obj", "furnace_box.obj", "table_room.gltf", "tetrahedron.obj"})
         scenes.emplace_back(name, dataScene(name));
     for (const auto& [name, scene] : scenes) {
         for (const std::size_t wanted : {500U, 2000U, 5000U, 20000U}) {
@@ -132,8 +130,7 @@ TEST(BuildPatchMesh, GivesTwoSidedPolygonsTwoSides) {
 
 TEST(BuildPatchMesh, RefusesAPatchLengthThatIsNotPositive) {
     const Scene scene = roomWithTurnedBox();
-    for (const double length : {0.0, -1.0, std::nan("")})
-        EXPECT_THROW(meshWithLength(scene, length), UsageError);
+    for (const double length : {0.0, -1.0, std::nan("")}) EXPECT_THROW(meshWithLength(scene, length), UsageError);
     EXPECT_THROW(meshWithLength(scene, 1e-6), UsageError) << "more patches than indices";
 }
 

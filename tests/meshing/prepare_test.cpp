@@ -1,4 +1,5 @@
 #include "meshing/prepare.h"
+#include "scene/example_scenes.h"
 
 #include "mesh_checks.h"
 #include "meshing/plane_frame.h"
@@ -138,6 +139,22 @@ TEST(PlaneFrame, IsOrthonormalAndSeesTheFrontCounterClockwise) {
             EXPECT_NEAR(area, exactArea(sample.scene, polygon), 1e-9 * longest * longest);
         }
     }
+}
+
+TEST(PrepareScene, PolygonsOnTheSameVerticesBecomeOne) {
+    const std::array<glm::vec3, 4> up{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+    const std::array<glm::vec3, 4> turned{{{1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}}};
+    const std::array<glm::vec3, 4> down{{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}};
+    const std::array quads{up, turned, down};
+    const std::array materials{greyMaterial("a", 0.5F), greyMaterial("b", 0.5F), greyMaterial("c", 0.5F)};
+    PrepareReport report;
+    const Scene prepared = prepareScene(quadScene(quads, materials), {}, &report);
+    ASSERT_EQ(prepared.polygons.size(), 1U);
+    EXPECT_EQ(prepared.polygons[0].material, 0U);
+    EXPECT_EQ(prepared.polygons[0].backMaterial, 2U);
+    EXPECT_EQ(report.duplicatePolygons, 1U);
+    EXPECT_EQ(report.mergedSheets, 1U);
+    EXPECT_EQ(prepareScene(quadScene(quads, materials), {.mergeCoincident = false}).polygons.size(), 3U);
 }
 
 } // namespace

@@ -99,8 +99,7 @@ Scene roomWithTurnedBox() {
     scene.nodes.emplace_back("room");
     addBox(scene, {0.0F, 0.0F, 0.0F}, {4.0F, 3.0F, 2.5F}, true);
     for (Polygon& polygon : scene.polygons)
-        if (polygon.node == scene.nodes.size() - 1)
-            std::reverse(polygon.vertices.begin(), polygon.vertices.end());
+        if (polygon.node == scene.nodes.size() - 1) std::reverse(polygon.vertices.begin(), polygon.vertices.end());
     return prepareScene(scene);
 }
 
@@ -129,11 +128,10 @@ std::vector<SampleScene> sampleScenes() {
     samples.push_back({"turned_box", turned(greyBox()), true});
     samples.push_back({"room_with_turned_box", roomWithTurnedBox()});
     for (SampleScene& sample : samples) sample.scene = prepareScene(sample.scene);
-    for (const char* name : {"cornell_box", "cube6", "furnace_box", "parallel_squares",
-                             "perpendicular_squares", "room432", "table_room", "tetrahedron"}) {
+    for (const char* name : {"cornell_box", "cube6", "furnace_box", "parallel_squares", "perpendicular_squares",
+                             "room432", "table_room", "tetrahedron"}) {
         const std::string text(name);
-        const bool closed =
-            text == "cube6" || text == "furnace_box" || text == "room432" || text == "tetrahedron";
+        const bool closed = text == "cube6" || text == "furnace_box" || text == "room432" || text == "tetrahedron";
         samples.push_back({text, dataScene(text + ".obj"), closed});
     }
     return samples;

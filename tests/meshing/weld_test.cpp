@@ -59,8 +59,7 @@ TEST(WeldPositions, WeldsAcrossZeroAndAcrossCellBorders) {
     for (int cell = -3; cell <= 3; ++cell) {
         const float border = 4.0F * static_cast<float>(cell);
         EXPECT_EQ(weldPositions(onAxis({border - 0.4F, border + 0.4F}), 1.0F), (Indices{0, 0})) << border;
-        EXPECT_EQ(weldPositions(onAxis({border, border + 1.0F, border - 1.0F}), 1.0F), (Indices{0, 0, 0}))
-            << border;
+        EXPECT_EQ(weldPositions(onAxis({border, border + 1.0F, border - 1.0F}), 1.0F), (Indices{0, 0, 0})) << border;
     }
 }
 
@@ -82,8 +81,7 @@ TEST(WeldPositions, AgreesWithTheDefinitionOnRandomPositions) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
         Positions positions;
-        for (int i = 0; i < 1000; ++i)
-            positions.emplace_back(uniform(random), uniform(random), uniform(random));
+        for (int i = 0; i < 1000; ++i) positions.emplace_back(uniform(random), uniform(random), uniform(random));
         for (const float tolerance : {0.01F, 0.1F, 0.5F}) {
             const Indices welded = weldPositions(positions, tolerance);
             EXPECT_EQ(welded, weldSlowly(positions, tolerance)) << tolerance;

@@ -56,17 +56,17 @@ inline PatchMesh gridMesh(const Scene& scene, std::uint32_t n) {
                     mesh.corners.push_back({v, v + 1, v + n + 2, v + n + 1});
                 mesh.normal.push_back((back ? -1.0F : 1.0F) * glm::normalize(glm::cross(e, f)));
                 mesh.polygon.push_back(index);
-                mesh.material.push_back(polygon.material);
+                mesh.material.push_back(back ? polygon.backMaterial : polygon.material);
             }
         }
     };
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        mesh.lookup.addGrid(static_cast<std::uint32_t>(mesh.corners.size()), n, n);
+        mesh.lookup.addGrid(scene, scene.polygons[i], static_cast<std::uint32_t>(mesh.corners.size()), n, n);
         addSide(i, false);
     }
     mesh.frontCount = mesh.corners.size();
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        if (!scene.materials[scene.polygons[i].material].twoSided) continue;
+        if (scene.polygons[i].backMaterial == kNone) continue;
         mesh.lookup.setBack(i, static_cast<std::uint32_t>(mesh.corners.size()));
         addSide(i, true);
     }

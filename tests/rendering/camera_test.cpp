@@ -65,8 +65,7 @@ TEST(LookAtCamera, RefusesWhatHasNoView) {
 
 TEST(LookAtCamera, WorksAtAnyScale) {
     for (const float scale : {1e-20F, 1e-8F, 1e8F, 1e30F}) {
-        const Camera camera =
-            lookAtCamera(glm::vec3(0), scale * glm::vec3(3, 0, 4), scale * glm::vec3(0, 1, 0), 45);
+        const Camera camera = lookAtCamera(glm::vec3(0), scale * glm::vec3(3, 0, 4), scale * glm::vec3(0, 1, 0), 45);
         expectNear(camera.direction, {0.6F, 0.0F, 0.8F});
         expectNear(camera.up, {0, 1, 0});
     }

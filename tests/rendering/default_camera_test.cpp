@@ -37,9 +37,9 @@ void expectWholeBoxInPicture(const Scene& scene, const Camera& camera, float asp
 }
 
 TEST(DefaultCamera, StandsOnTheOpenSideOfABox) {
-    const std::vector<std::pair<test::Side, glm::vec3>> sides{
-        {test::Left, {-1, 0, 0}}, {test::Right, {1, 0, 0}}, {test::Front, {0, 0, 1}},
-        {test::Back, {0, 0, -1}}, {test::Top, {0, 1, 0}},   {test::Bottom, {0, -1, 0}}};
+    const std::vector<std::pair<test::Side, glm::vec3>> sides{{test::Left, {-1, 0, 0}}, {test::Right, {1, 0, 0}},
+                                                              {test::Front, {0, 0, 1}}, {test::Back, {0, 0, -1}},
+                                                              {test::Top, {0, 1, 0}},   {test::Bottom, {0, -1, 0}}};
     for (const auto& [side, axis] : sides) {
         const Scene scene = test::boxScene({side});
         const Camera camera = cameraOf(scene);

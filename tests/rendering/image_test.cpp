@@ -19,8 +19,7 @@ Image gradient(int width, int height) {
     image.height = height;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            image.pixels.emplace_back(1e-6F * static_cast<float>(x * x * x), 3.7F * static_cast<float>(y),
-                                      1e5F);
+            image.pixels.emplace_back(1e-6F * static_cast<float>(x * x * x), 3.7F * static_cast<float>(y), 1e5F);
     return image;
 }
 
@@ -34,8 +33,7 @@ std::vector<Channel> readBack(const std::filesystem::path& path, OIIO::ImageSpec
     EXPECT_TRUE(input != nullptr);
     spec = input->spec();
     std::vector<Channel> channels(static_cast<std::size_t>(spec.width * spec.height * spec.nchannels));
-    EXPECT_TRUE(
-        input->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Channel>::value, channels.data()));
+    EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Channel>::value, channels.data()));
     return channels;
 }
 

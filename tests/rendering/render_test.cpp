@@ -60,8 +60,7 @@ TEST(RenderBaked, ReproducesLinearLight) {
     const CameraRays rays(camera, options.width, options.height);
     for (int y = 0; y < options.height; ++y) {
         for (int x = 0; x < options.width; ++x) {
-            const glm::vec3 direction =
-                rays.direction(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const glm::vec3 direction = rays.direction(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
             const auto hit = caster.closest(Ray{camera.eye, direction});
             ASSERT_TRUE(hit);
             const glm::vec3 expected = glm::vec3(2.0F) + camera.eye + hit->distance * direction;
@@ -75,8 +74,7 @@ TEST(RenderBaked, ReproducesLinearLight) {
 TEST(RenderBaked, DoesNotDependOnThreads) {
     const Scene scene = test::boxScene({test::Front});
     const PatchMesh mesh = test::gridMesh(scene, 4);
-    const BakedMesh baked =
-        test::bakedWith(scene, mesh, [](auto& p, auto&) { return glm::vec3(1.0F) + p * p; });
+    const BakedMesh baked = test::bakedWith(scene, mesh, [](auto& p, auto&) { return glm::vec3(1.0F) + p * p; });
     const Camera camera = lookAtCamera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 50.0F);
     const RenderOptions options = sized(50, 50);
     setThreadCount(1);
@@ -90,8 +88,7 @@ TEST(RenderBaked, DoesNotDependOnThreads) {
 TEST(RenderBaked, SeedMovesTheSamples) {
     const Scene scene = test::boxScene({test::Front});
     const PatchMesh mesh = test::gridMesh(scene, 2);
-    const BakedMesh baked =
-        test::bakedWith(scene, mesh, [](auto& p, auto&) { return glm::vec3(1.0F) + p * p; });
+    const BakedMesh baked = test::bakedWith(scene, mesh, [](auto& p, auto&) { return glm::vec3(1.0F) + p * p; });
     const Camera camera = lookAtCamera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 50.0F);
     RenderOptions options = sized(20, 20);
     const Image first = picture(scene, mesh, baked, camera, options);
@@ -104,8 +101,8 @@ class Wall : public testing::Test {
 protected:
     Rgb seenFrom(float z, const RenderOptions& options = sized(4, 4)) const {
         const PatchMesh mesh = test::gridMesh(scene_, 2);
-        const BakedMesh baked = test::bakedWith(
-            scene_, mesh, [](auto&, auto& n) { return Rgb(kPi * (n.z > 0.0F ? 1.0F : 3.0F)); });
+        const BakedMesh baked =
+            test::bakedWith(scene_, mesh, [](auto&, auto& n) { return Rgb(kPi * (n.z > 0.0F ? 1.0F : 3.0F)); });
         const Camera camera = lookAtCamera({0.1F, 0.1F, z}, {0.1F, 0.1F, -1}, {0, 1, 0}, 10.0F);
         return picture(scene_, mesh, baked, camera, options).at(2, 1);
     }
@@ -120,7 +117,7 @@ TEST_F(Wall, OfOneSideHasABlackBack) {
 }
 
 TEST_F(Wall, OfTwoSidesShowsEach) {
-    scene_.materials[0].twoSided = true;
+    for (Polygon& polygon : scene_.polygons) polygon.backMaterial = polygon.material;
     EXPECT_NEAR(seenFrom(2.0F).x, 1.0F, kRounding);
     EXPECT_NEAR(seenFrom(-4.0F).x, 3.0F, kRounding);
 }

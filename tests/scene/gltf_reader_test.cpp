@@ -33,10 +33,9 @@ protected:
 TEST_F(GltfReader, ReadsGlbDataUriAndExternalBufferAlike) {
     Square square;
     std::vector<Scene> scenes = {read(square).scene};
-    for (const std::string& uri :
-         {"data:application/octet-stream;base64," + base64(square.binary),
-          "data:application/gltf-buffer;base64," + base64(square.binary),
-          "data:;base64," + base64(square.binary + "more"), std::string("a%20b+c.bin")}) {
+    for (const std::string& uri : {"data:application/octet-stream;base64," + base64(square.binary),
+                                   "data:application/gltf-buffer;base64," + base64(square.binary),
+                                   "data:;base64," + base64(square.binary + "more"), std::string("a%20b+c.bin")}) {
         square["/buffers/0/uri"] = uri;
         folder.write("a b+c.bin", square.binary + "more than the buffer needs");
         scenes.push_back(readScene(folder.write("scene.gltf", square.document.dump(2))).scene);
@@ -58,8 +57,8 @@ TEST_F(GltfReader, ReadsIndicesOfAllSizesAndNone) {
     for (const int type : {5121, 5125}) {
         Square square;
         square.binary.resize(48);
-        square.binary += type == 5121 ? bytesOf<std::uint8_t>({0, 1, 2, 0, 2, 3})
-                                      : bytesOf<std::uint32_t>({0, 1, 2, 0, 2, 3});
+        square.binary +=
+            type == 5121 ? bytesOf<std::uint8_t>({0, 1, 2, 0, 2, 3}) : bytesOf<std::uint32_t>({0, 1, 2, 0, 2, 3});
         square["/accessors/1/componentType"] = type;
         square["/bufferViews/1/byteLength"] = square.binary.size() - 48;
         square["/buffers/0/byteLength"] = square.binary.size();
@@ -73,8 +72,7 @@ TEST_F(GltfReader, ReadsIndicesOfAllSizesAndNone) {
 
 TEST_F(GltfReader, ReadsInterleavedPositions) {
     Square square;
-    square.binary =
-        bytesOf<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 1, 1, 0, 9, 0, 1, 0}) + square.binary.substr(48);
+    square.binary = bytesOf<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 1, 1, 0, 9, 0, 1, 0}) + square.binary.substr(48);
     square["/bufferViews/0"] = {{"buffer", 0}, {"byteLength", 64}, {"byteStride", 16}};
     square["/accessors/0/byteOffset"] = 4;
     square["/bufferViews/1/byteOffset"] = 64;
@@ -94,8 +92,7 @@ TEST_F(GltfReader, StripsAndFansKeepTheFront) {
         square["/meshes/0/primitives/0/mode"] = mode;
         const Scene scene = read(square).scene;
         ASSERT_EQ(scene.polygons.size(), 2U);
-        for (const Polygon& polygon : scene.polygons)
-            EXPECT_EQ(areaVector(scene, polygon), glm::vec3(0, 0, 0.5F));
+        for (const Polygon& polygon : scene.polygons) EXPECT_EQ(areaVector(scene, polygon), glm::vec3(0, 0, 0.5F));
     }
 }
 
@@ -226,27 +223,21 @@ TEST_F(GltfReader, RefusesAUnit) {
 TEST_F(GltfReader, RejectsAccessorsThatReachPastTheirMemory) {
     expectErrorAt("/accessors/0/count", "5",
                   "/accessors/0/count: found 5, allowed at most 4 (bufferView 0 has 48 bytes)");
-    expectErrorAt("/accessors/0/count", "18446744073709551615",
-                  "/accessors/0/count: found 18446744073709551615");
-    expectErrorAt("/accessors/0/byteOffset", "18446744073709551612",
-                  "/accessors/0/count: found 4, allowed at most 0");
+    expectErrorAt("/accessors/0/count", "18446744073709551615", "/accessors/0/count: found 18446744073709551615");
+    expectErrorAt("/accessors/0/byteOffset", "18446744073709551612", "/accessors/0/count: found 4, allowed at most 0");
     expectErrorAt("/accessors/0/byteOffset", "4", "/accessors/0/count: found 4, allowed at most 3");
     expectErrorAt("/bufferViews/0/byteStride", "16", "/accessors/0/count: found 4, allowed at most 3");
-    expectErrorAt("/bufferViews/0/byteStride", "8",
-                  "/bufferViews/0/byteStride: found 8, allowed at least 12");
-    expectErrorAt("/bufferViews/0/byteLength", "61",
-                  "/bufferViews/0/byteLength: found 61, allowed at most 60");
+    expectErrorAt("/bufferViews/0/byteStride", "8", "/bufferViews/0/byteStride: found 8, allowed at least 12");
+    expectErrorAt("/bufferViews/0/byteLength", "61", "/bufferViews/0/byteLength: found 61, allowed at most 60");
     expectErrorAt("/bufferViews/0/byteLength", "18446744073709551615", "/bufferViews/0/byteLength: found");
     expectErrorAt("/bufferViews/1/byteOffset", "18446744073709551615", "/bufferViews/1/byteOffset: found");
-    expectErrorAt("/bufferViews/1/byteOffset", "52",
-                  "/bufferViews/1/byteLength: found 12, allowed at most 8");
+    expectErrorAt("/bufferViews/1/byteOffset", "52", "/bufferViews/1/byteLength: found 12, allowed at most 8");
     expectErrorAt("/buffers/0/byteLength", "61", "/buffers/0/byteLength: found 61, allowed 1 to 60");
     expectErrorAt("/buffers/0/byteLength", "0", "/buffers/0/byteLength: found 0");
 }
 
 TEST_F(GltfReader, RejectsIndicesOutOfRangeWithTheirPath) {
-    expectErrorAt("/accessors/0/count", "3",
-                  "/accessors/1: found index 3 as element 5, allowed indices below 3");
+    expectErrorAt("/accessors/0/count", "3", "/accessors/1: found index 3 as element 5, allowed indices below 3");
     expectErrorAt("/accessors/1/bufferView", "2", "scene.glb: accessor[1] invalid bufferView");
     expectErrorAt("/accessors/0/bufferView", "2", "/accessors/0/bufferView: found 2, allowed 0 to 1");
     expectErrorAt("/bufferViews/0/buffer", "1", "/bufferViews/0/buffer: found 1, allowed 0 to 0");
@@ -258,8 +249,7 @@ TEST_F(GltfReader, RejectsIndicesOutOfRangeWithTheirPath) {
     expectErrorAt("/nodes/0/camera", "0", "/nodes/0/camera: found 0");
     expectErrorAt("/nodes/0/children", "[5]", "/nodes/0/children/0: found 5");
     expectErrorAt("/meshes/0/primitives/0/material", "1", "/meshes/0/primitives/0/material: found 1");
-    expectErrorAt("/meshes/0/primitives/0/attributes/POSITION", "2",
-                  "/attributes/POSITION: found 2, allowed 0 to 1");
+    expectErrorAt("/meshes/0/primitives/0/attributes/POSITION", "2", "/attributes/POSITION: found 2, allowed 0 to 1");
     expectErrorAt("/meshes/0/primitives/0/mode", "7", "/meshes/0/primitives/0/mode: found 7, allowed 0 to 6");
 }
 
@@ -267,22 +257,19 @@ TEST_F(GltfReader, RejectsCyclesAndSecondParents) {
     expectErrorAt("/nodes/0/children", "[0]", "/nodes/0/children/0: found node 0 again");
     expectErrorAt("/nodes", R"([{"children": [1]}, {"children": [0], "mesh": 0}])",
                   "/nodes/1/children/0: found node 0");
-    expectErrorAt("/nodes", R"([{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}])",
-                  "found node 2 again");
+    expectErrorAt("/nodes", R"([{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}])", "found node 2 again");
     expectErrorAt("/scenes/0/nodes", "[0, 0]", "/scenes/0/nodes/1: found node 0 again");
 }
 
 TEST_F(GltfReader, RejectsMembersOfAWrongTypeWithTheirPath) {
-    expectErrorAt("/accessors/0/componentType", "5123",
-                  "/accessors/0: found UNSIGNED_SHORT VEC3, allowed FLOAT VEC3");
+    expectErrorAt("/accessors/0/componentType", "5123", "/accessors/0: found UNSIGNED_SHORT VEC3, allowed FLOAT VEC3");
     expectErrorAt("/accessors/0/type", "\"VEC2\"", "/accessors/0: found FLOAT VEC2");
     expectErrorAt("/accessors/1/componentType", "5122", "/accessors/1: found SHORT SCALAR");
     expectErrorAt("/accessors/1/componentType", "5126", "/accessors/1: found FLOAT SCALAR");
     expectErrorAt("/accessors/0/sparse", R"({"count": 1})", "scene.glb: ");
-    expectErrorAt(
-        "/accessors/0/sparse",
-        R"({"count": 1, "indices": {"bufferView": 0, "componentType": 5125}, "values": {"bufferView": 0}})",
-        "/accessors/0/sparse: found a sparse accessor");
+    expectErrorAt("/accessors/0/sparse",
+                  R"({"count": 1, "indices": {"bufferView": 0, "componentType": 5125}, "values": {"bufferView": 0}})",
+                  "/accessors/0/sparse: found a sparse accessor");
     expectErrorAt("/accessors/0/count", "4.5", "/accessors/0/count: found 4.5, allowed an integer");
     expectErrorAt("/accessors/1/count", "4", "/meshes/0/primitives/0: found triangles with 4 corners");
     expectErrorAt("/meshes/0/primitives/0/indices", "\"1\"", "/meshes/0/primitives/0/indices: found \"1\"");
@@ -297,15 +284,11 @@ TEST_F(GltfReader, RejectsMembersOfAWrongTypeWithTheirPath) {
     expectErrorAt("/asset", "{}", "/asset/version: found nothing");
     expectErrorAt("/materials/0/emissiveFactor", "[1, 1]", "/materials/0/emissiveFactor: found [1,1]");
     expectErrorAt("/materials/0/emissiveFactor", "[1, -1, 1]", "/materials/0/emissiveFactor/1: found -1");
-    expectErrorAt("/materials/0/pbrMetallicRoughness/metallicFactor", "2",
-                  "/metallicFactor: found 2, allowed 0 to 1");
-    expectErrorAt("/materials/0/pbrMetallicRoughness/baseColorFactor/2", "-0.5",
-                  "baseColorFactor/2: found -0.5");
-    expectErrorAt("/materials/0/extensions",
-                  R"({"KHR_materials_emissive_strength": {"emissiveStrength": 1e60}})",
+    expectErrorAt("/materials/0/pbrMetallicRoughness/metallicFactor", "2", "/metallicFactor: found 2, allowed 0 to 1");
+    expectErrorAt("/materials/0/pbrMetallicRoughness/baseColorFactor/2", "-0.5", "baseColorFactor/2: found -0.5");
+    expectErrorAt("/materials/0/extensions", R"({"KHR_materials_emissive_strength": {"emissiveStrength": 1e60}})",
                   "emissiveStrength: found 1e+60");
-    expectErrorAt("/materials/0/extensions",
-                  R"({"KHR_materials_emissive_strength": {"emissiveStrength": "1"}})",
+    expectErrorAt("/materials/0/extensions", R"({"KHR_materials_emissive_strength": {"emissiveStrength": "1"}})",
                   "/emissiveStrength: found \"1\", allowed a number");
     Square camera;
     camera["/cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 0.1}}}}};
@@ -314,8 +297,7 @@ TEST_F(GltfReader, RejectsMembersOfAWrongTypeWithTheirPath) {
 }
 
 TEST_F(GltfReader, RefusesExtensionsThatChangeTheGeometryByName) {
-    for (const char* name :
-         {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "X_new"})
+    for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "X_new"})
         expectErrorAt("/extensionsRequired", json{name}.dump(),
                       std::string("/extensionsRequired/0: found \"") + name + "\"");
 }
@@ -331,8 +313,7 @@ TEST_F(GltfReader, RejectsBuffersThatCannotBeRead) {
     expectUriError(".", "/buffers/0/uri: found \".\"");
     expectUriError(7, "/buffers/0/uri: found 7, allowed a string");
     expectUriError("data:text/plain,abc", "/buffers/0/uri: found \"data:text/plain,abc\"");
-    expectUriError("data:application/octet-stream;base64,AAAA",
-                   "/buffers/0/byteLength: found 60, allowed 1 to 3");
+    expectUriError("data:application/octet-stream;base64,AAAA", "/buffers/0/byteLength: found 60, allowed 1 to 3");
     expectUriError("data:application/octet-stream;base64," + std::string(80, '!'), "scene.gltf: ");
     folder.write("short.bin", "short");
     expectUriError("short.bin", "/buffers/0/byteLength: found 60, allowed 1 to 5");
@@ -360,14 +341,12 @@ TEST_F(GltfReader, RejectsBrokenContainersAndText) {
 
     expectInputError(folder.write("scene.gltf", "{\n\"asset\": }"), "not JSON: parse error at line 2");
     expectInputError(folder.write("scene.gltf", "[]"), "found JSON that is not an object");
-    expectInputError(folder.write("scene.gltf", R"({"asset": {"version": "2.0"}, "scene": 1e999})"),
-                     "not JSON");
+    expectInputError(folder.write("scene.gltf", R"({"asset": {"version": "2.0"}, "scene": 1e999})"), "not JSON");
     expectInputError(folder.write("scene.gltf", "{\"a\": \"\xff\"}"), "not JSON");
     expectInputError(folder.write("scene.gltf", "{}"), "/asset: found nothing");
     expectInputError(folder.write("scene.gltf", R"({"asset": {"version": "2.0"}})"), "found no polygons");
     expectInputError(folder.write("scene.gltf", ""), "the file is empty");
-    expectInputError(folder.write("scene.gltf", "{\"extras\": " + std::string(1000000, '[')),
-                     "nested deeper than 64");
+    expectInputError(folder.write("scene.gltf", "{\"extras\": " + std::string(1000000, '[')), "nested deeper than 64");
     expectInputError(folder.path() / "none.glb", "none.glb: no such file");
 }
 

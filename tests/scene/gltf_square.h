@@ -24,8 +24,7 @@ inline std::string base64(const std::string& bytes) {
         std::uint32_t bits = 0;
         for (std::size_t b = 0; b < 3; ++b)
             bits = bits << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0U);
-        for (std::size_t d = 0; d < 4; ++d)
-            text += k + d <= bytes.size() ? kDigits[bits >> (18 - 6 * d) & 63] : '=';
+        for (std::size_t d = 0; d < 4; ++d) text += k + d <= bytes.size() ? kDigits[bits >> (18 - 6 * d) & 63] : '=';
     }
     return text;
 }
@@ -35,9 +34,7 @@ inline std::string glb(const nlohmann::json& document, std::string binary) {
     std::string text = document.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     binary.resize((binary.size() + 3) / 4 * 4, '\0');
-    const auto word = [](std::size_t value) {
-        return bytesOf(std::vector{static_cast<std::uint32_t>(value)});
-    };
+    const auto word = [](std::size_t value) { return bytesOf(std::vector{static_cast<std::uint32_t>(value)}); };
     std::string chunks = word(text.size()) + "JSON" + text;
     if (!binary.empty()) chunks += word(binary.size()) + std::string("BIN\0", 4) + binary;
     return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
@@ -58,9 +55,7 @@ struct Square {
         "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
         "buffers": [{"byteLength": 60}]})");
 
-    nlohmann::json& operator[](const std::string& pointer) {
-        return document[nlohmann::json::json_pointer(pointer)];
-    }
+    nlohmann::json& operator[](const std::string& pointer) { return document[nlohmann::json::json_pointer(pointer)]; }
 };
 
 } // namespace lambert

@@ -25,9 +25,8 @@ protected:
 };
 
 TEST_F(ObjReader, ReadsTrianglesAndQuadsInTheFilesOrder) {
-    const ReadResult result =
-        read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl b\nf 1 2 3 4\ng second\nusemtl a\n"
-             "f 1 2 3\nusemtl b\nf 4 3 1\no third\nf 4 3 2\n");
+    const ReadResult result = read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl b\nf 1 2 3 4\ng second\nusemtl a\n"
+                                   "f 1 2 3\nusemtl b\nf 4 3 1\no third\nf 4 3 2\n");
     const Scene& scene = result.scene;
     ASSERT_EQ(scene.polygons.size(), 4U);
     EXPECT_EQ(scene.polygons[0].vertices, (std::array<std::uint32_t, 4>{0, 1, 2, 3}));
@@ -99,14 +98,13 @@ TEST_F(ObjReader, ReadsPolygonsOfMoreThan255Vertices) {
         const ReadResult result = read(obj + face + "\nv 9 0 0\nv 9 1 0\nv 8 0 0\nf -3 -2 -1\n");
         EXPECT_EQ(result.scene.polygons.size(), static_cast<std::size_t>(sides - 2 + 1));
         // The regular polygon and a triangle of 1/2; single precision.
-        EXPECT_NEAR(totalArea(result.scene), 0.5 * sides * std::sin(glm::two_pi<double>() / sides) + 0.5,
-                    1e-4);
+        EXPECT_NEAR(totalArea(result.scene), 0.5 * sides * std::sin(glm::two_pi<double>() / sides) + 0.5, 1e-4);
     }
 }
 
 TEST_F(ObjReader, DropsPolygonsWithVerticesThatAreNotNumbers) {
-    for (const std::string spelling : {"nan", "-nan", "NaN", "inf", "-inf", "-nan(ind)", "1.#QNAN", "-1.#IND",
-                                       "1e999", "1e99999999999", "infinity"}) {
+    for (const std::string spelling : {"nan", "-nan", "NaN", "inf", "-inf", "-nan(ind)", "1.#QNAN", "-1.#IND", "1e999",
+                                       "1e99999999999", "infinity"}) {
         SCOPED_TRACE(spelling);
         const ReadResult result =
             read(kTriangle + "v 0 " + spelling + " 1\nvn nan nan nan\nf 1//1 2//1 3//1\nf 1 2 4\n");
@@ -116,9 +114,8 @@ TEST_F(ObjReader, DropsPolygonsWithVerticesThatAreNotNumbers) {
 }
 
 TEST_F(ObjReader, ReadsMaterials) {
-    folder.write("m/my materials.mtl",
-                 "newmtl red wall\r\n  Kd 0.5 0.25 0.125 # red\r\n\tKe 1 2 3\r\nnewmtl  grey\r\n"
-                 "Kd 0.5\r\nnewmtl spectrum\nKd spectral a.rfl\nnewmtl light\nKe 4\n");
+    folder.write("m/my materials.mtl", "newmtl red wall\r\n  Kd 0.5 0.25 0.125 # red\r\n\tKe 1 2 3\r\nnewmtl  grey\r\n"
+                                       "Kd 0.5\r\nnewmtl spectrum\nKd spectral a.rfl\nnewmtl light\nKe 4\n");
     const ReadResult result =
         read("mtllib m/my materials.mtl\n" + kTriangle + "usemtl red wall\nf 1 2 3\nusemtl grey\nf 1 2 3\n");
     const auto& materials = result.scene.materials;
@@ -148,8 +145,8 @@ TEST_F(ObjReader, ReadsSeveralLibrariesAndKeepsTheFirstOfTwoEqualNames) {
 }
 
 TEST_F(ObjReader, WarnsOfUnknownMaterialsAndMissingLibraries) {
-    const ReadResult result = read("mtllib none.mtl\n" + kTriangle +
-                                   "f 1 2 3\nusemtl x\nf 1 2 3\nusemtl y\nf 1 2 3\nusemtl x\nf 1 2 3\n");
+    const ReadResult result =
+        read("mtllib none.mtl\n" + kTriangle + "f 1 2 3\nusemtl x\nf 1 2 3\nusemtl y\nf 1 2 3\nusemtl x\nf 1 2 3\n");
     ASSERT_EQ(result.scene.materials.size(), 3U);
     EXPECT_EQ(result.scene.materials[0].name, "default");
     EXPECT_EQ(result.scene.materials[1].name, "x");
@@ -190,8 +187,7 @@ TEST_F(ObjReader, RejectsMalformedFilesWithLineAndText) {
     expectError(kTriangle + "f 1 2\n", "scene.obj:4: found \"f 1 2\", expected at least 3");
     expectError(kTriangle + "f\n", "scene.obj:4: found \"f\"");
     expectError(kTriangle + "f 0 1 2\n", "found \"0\"");
-    expectError(kTriangle + "f 1 2 -4\n",
-                "found \"-4\", expected a vertex that exists: 3 vertices lie before");
+    expectError(kTriangle + "f 1 2 -4\n", "found \"-4\", expected a vertex that exists: 3 vertices lie before");
     expectError("f -1 -2 -3\n" + kTriangle, "scene.obj:1: found \"-1\"");
     expectError(kTriangle + "f 1 2 c\n", "found \"c\"");
     expectError(kTriangle + "f 1 2 3.0\n", "found \"3.0\"");
@@ -216,8 +212,7 @@ TEST_F(ObjReader, RejectsMalformedMaterialsWithTheirOwnFileAndLine) {
         folder.write("scene.mtl", mtl);
         expectError("mtllib scene.mtl\n" + kTriangle + "f 1 2 3\n", part);
     };
-    expectMtlError("newmtl a\nKd 0.5 0.5\n",
-                   "scene.mtl:2: found \"Kd 0.5 0.5\", expected 1 or 3 numbers after Kd");
+    expectMtlError("newmtl a\nKd 0.5 0.5\n", "scene.mtl:2: found \"Kd 0.5 0.5\", expected 1 or 3 numbers after Kd");
     expectMtlError("newmtl a\nKd\n", "scene.mtl:2: found \"Kd\"");
     expectMtlError("newmtl a\n\nKe 1 x 3\n", "scene.mtl:3: found \"x\", expected a finite number after Ke");
     expectMtlError("newmtl a\nKd nan nan nan\n", "scene.mtl:2: found \"nan\"");

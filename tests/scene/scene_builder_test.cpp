@@ -123,16 +123,14 @@ TEST_F(SceneBuilderTest, RefusesASceneFromWhichNothingIsLeft) {
         builder.finish();
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "file: found no usable polygon among 1: 0 with a coordinate that is not finite, "
-                     "1 without area");
+        EXPECT_STREQ(error.what(), "file: found no usable polygon among 1: 0 with a coordinate that is not finite, "
+                                   "1 without area");
     }
 }
 
 TEST_F(SceneBuilderTest, ClampsMaterialsWithOneWarningEach) {
     builder.addMaterial({.name = "fine"});
-    builder.addMaterial(
-        {.name = "odd", .reflectance = Rgb(1.5F, -1.0F, 0.5F), .emittedRadiance = Rgb(-1, 2, 0)});
+    builder.addMaterial({.name = "odd", .reflectance = Rgb(1.5F, -1.0F, 0.5F), .emittedRadiance = Rgb(-1, 2, 0)});
     addTriangle();
     const ReadResult result = builder.finish();
     EXPECT_EQ(result.scene.materials[1].reflectance, Rgb(0.99F, 0.0F, 0.5F));
@@ -144,8 +142,7 @@ TEST_F(SceneBuilderTest, ClampsMaterialsWithOneWarningEach) {
 TEST_F(SceneBuilderTest, TwoSidedOptionAppliesToEveryMaterial) {
     SceneBuilder twoSided("file", {.twoSided = true});
     twoSided.addMaterial({});
-    for (const glm::dvec3& p : {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)})
-        twoSided.addPosition(p);
+    for (const glm::dvec3& p : {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}) twoSided.addPosition(p);
     twoSided.addPolygon(std::array<std::uint32_t, 3>{0, 1, 2}, 0, 0);
     EXPECT_TRUE(twoSided.finish().scene.materials[0].twoSided);
 }
@@ -153,8 +150,8 @@ TEST_F(SceneBuilderTest, TwoSidedOptionAppliesToEveryMaterial) {
 TEST_F(SceneBuilderTest, TreatsScaledPolygonsAlike) {
     for (const double scale : {1e-8, 1.0, 1e8}) {
         SceneBuilder scaled("file", {});
-        for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0),
-                                    glm::dvec3(0, 1, 0), glm::dvec3(-1, 0.5, 0)})
+        for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(0, 1, 0),
+                                    glm::dvec3(-1, 0.5, 0)})
             scaled.addPosition(p * scale);
         scaled.addPolygon(std::array<std::uint32_t, 4>{0, 1, 2, 3}, 0, 0);
         scaled.addPolygon(std::array<std::uint32_t, 5>{0, 1, 2, 3, 4}, 0, 0);

@@ -40,8 +40,7 @@ TEST_F(SceneFiles, ObjAndGlbOfTheSameSceneHaveTheSameArea) {
         if (!std::filesystem::is_directory(scenes / folder)) continue;
         for (const auto& entry : std::filesystem::directory_iterator(scenes / folder)) {
             std::filesystem::path twin = entry.path();
-            if (twin.extension() != ".obj" || !std::filesystem::exists(twin.replace_extension(".glb")))
-                continue;
+            if (twin.extension() != ".obj" || !std::filesystem::exists(twin.replace_extension(".glb"))) continue;
             SCOPED_TRACE(twin.string());
             const double area = totalArea(readScene(entry.path()).scene);
             EXPECT_NEAR(totalArea(readScene(twin).scene), area,

@@ -51,15 +51,16 @@ constexpr double kFloatStorage = 3e-7;
 TEST(Jacobi, SolvesTheSixPatchCubeExactly) {
     constexpr std::array expected{0.282250025, 0.071452995, 0.222925591, 1.200418941, 0.301253967, 0.374705604};
     Progress progress;
-    const auto solution = solveJacobi(patchesWith(kCubeReflectance, kCubeEmitted), cubeMatrix(), {.tolerance = 1e-12}, progress);
+    const auto solution =
+        solveJacobi(patchesWith(kCubeReflectance, kCubeEmitted), cubeMatrix(), {.tolerance = 1e-12}, progress);
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(solution.radiosity[i].x, expected[i], kFloatStorage);
 }
 
 TEST(Jacobi, FirstIterateIsTheFirstBounce) {
     constexpr std::array expected{0.162535568, 0.037508208, 0.12491792, 1.040008755, 0.175, 0.310013133};
     Progress progress;
-    const auto solution =
-        solveJacobi(patchesWith(kCubeReflectance, kCubeEmitted), cubeMatrix(), {.tolerance = 0.0, .bounces = 1}, progress);
+    const auto solution = solveJacobi(patchesWith(kCubeReflectance, kCubeEmitted), cubeMatrix(),
+                                      {.tolerance = 0.0, .bounces = 1}, progress);
     EXPECT_EQ(solution.iterations, 1);
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(solution.radiosity[i].x, expected[i], kFloatStorage);
 }
@@ -69,9 +70,9 @@ TEST(Jacobi, SolvesTheTetrahedronExactly) {
     constexpr std::array emitted{1.0F, 0.0F, 0.0F, 0.0F};
     constexpr std::array expected{1.069867405, 0.249162174, 0.352979746, 0.445869153};
     Progress progress;
-    const auto solution =
-        solveJacobi(patchesWith(reflectance, emitted),
-                    dense(4, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0 / 3.0; }), {.tolerance = 1e-12}, progress);
+    const auto solution = solveJacobi(patchesWith(reflectance, emitted),
+                                      dense(4, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0 / 3.0; }),
+                                      {.tolerance = 1e-12}, progress);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(solution.radiosity[i].x, expected[i], kFloatStorage);
 }
 
@@ -79,9 +80,9 @@ TEST(Jacobi, SolvesInfinitePlatesExactly) {
     constexpr std::array reflectance{0.5F, 0.8F};
     constexpr std::array emitted{1.0F, 0.0F};
     Progress progress;
-    const auto solution =
-        solveJacobi(patchesWith(reflectance, emitted),
-                    dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0; }), {.tolerance = 1e-12}, progress);
+    const auto solution = solveJacobi(patchesWith(reflectance, emitted),
+                                      dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0; }),
+                                      {.tolerance = 1e-12}, progress);
     EXPECT_NEAR(solution.radiosity[0].x, 1.0 / (1.0 - 0.4), kFloatStorage);
     EXPECT_NEAR(solution.radiosity[1].x, 0.8 / (1.0 - 0.4), kFloatStorage);
 }
@@ -99,9 +100,9 @@ TEST(Jacobi, ChannelsDoNotMix) {
 
 TEST(Jacobi, ResidualFallsAsTheReflectance) {
     Progress progress;
-    const auto solution =
-        solveJacobi(patchesWith(std::array{0.5F, 0.5F}, std::array{1.0F, 1.0F}),
-                    dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0; }), {.tolerance = 1e-6}, progress);
+    const auto solution = solveJacobi(patchesWith(std::array{0.5F, 0.5F}, std::array{1.0F, 1.0F}),
+                                      dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0; }),
+                                      {.tolerance = 1e-6}, progress);
     ASSERT_EQ(solution.history.size(), static_cast<std::size_t>(solution.iterations));
     for (std::size_t k = 0; k < solution.history.size(); ++k)
         EXPECT_NEAR(solution.history[k].residual, std::pow(0.5, static_cast<double>(k) + 1.0), 1e-12);
@@ -127,7 +128,8 @@ TEST(Jacobi, EnergyBalancesWithReciprocalRowsAndEachTermIsItsOwn) {
 TEST(Jacobi, ASceneWithoutLightIsAnInputError) {
     Progress progress;
     const FormFactorMatrix matrix = dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 1.0; });
-    EXPECT_THROW(solveJacobi(patchesWith(std::array{0.5F, 0.5F}, std::array{0.0F, 0.0F}), matrix, {}, progress), InputError);
+    EXPECT_THROW(solveJacobi(patchesWith(std::array{0.5F, 0.5F}, std::array{0.0F, 0.0F}), matrix, {}, progress),
+                 InputError);
 }
 
 } // namespace
