@@ -60,7 +60,9 @@ void occupyStandardStreams() {
 
 int main(int argc, char** argv) {
     occupyStandardStreams();
-    std::signal(SIGPIPE, SIG_IGN); // a pipe closed early is an error of writing, not a silent death
+    // A pipe closed early or a file that may not grow is an error of writing, not a silent death.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run(argc, argv);
     } catch (const lambert::Error& error) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Wrong use ends with the right exit code and one line that says what is wrong, and leaves nothing behind."""
 import os
+import resource
 import subprocess
 import unittest
 
@@ -13,10 +14,10 @@ TRIANGLE = "v 0 0 0\nv 1 0 0\nv 1 1 0\n"
 
 
 class ErrorTest(ProgramTest):
-    def assert_fails(self, code, *arguments, says=""):
+    def assert_fails(self, code, *arguments, says="", **more):
         """Exit code, one line on stderr beside warnings, empty stdout, and an unchanged folder."""
         before = self.listing()
-        done = run(*arguments, cwd=self.folder)
+        done = run(*arguments, cwd=self.folder, **more)
         what = " ".join(map(str, arguments))
         lines = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
         self.assertEqual(done.returncode, code, f"{what}: {done.stderr}")
@@ -173,10 +174,15 @@ class WrongTargets(ErrorTest):
         for target in ("box.obj", "box.mtl", "p.csv"):
             self.assert_fails(USAGE, "probe", "box.obj", "p.csv", "-o", target, *TINY, says="overwrite")
 
-    def test_write_that_fails_leaves_no_temporary(self):
-        # Names end at 255 bytes: this one can be checked before the work, but a temporary one beside it not be made.
-        name = "x" * 248 + ".glb"
-        self.assert_target_refused(SYSTEM, "-o", name)
+    def test_write_that_fails_keeps_the_old_file_and_leaves_no_temporary(self):
+        # No file may grow past 1,000 bytes: the disk is as good as full.
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        self.write("x.glb", "old")
+        for target in ("x.glb", "x.ply"):
+            self.assert_fails(SYSTEM, "bake", BOX, "-o", target, *TINY, says="cannot write", preexec_fn=limit)
+
+    def test_name_may_be_as_long_as_names_can_be(self):
+        self.assertEqual(run("bake", BOX, "-o", "x" * 251 + ".glb", *TINY, cwd=self.folder).returncode, OK)
 
     def copy_box(self, library="box.mtl"):
         self.write(library, (DATA / "cornell_box.mtl").read_bytes())
