@@ -146,8 +146,9 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     Stopwatch watch;
     const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
     progress.begin("mesh", 0);
-    result.scene = std::make_shared<Scene>(
-        prepareScene(scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons}, &result.prepareReport));
+    result.scene = std::make_shared<Scene>(prepareScene(
+        scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons, .addCrossings = !keepPolygons},
+        &result.prepareReport));
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);

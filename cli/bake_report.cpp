@@ -51,6 +51,7 @@ Json inputJson(const BakeReportInput& in) {
             {"collapsed", in.baked.prepareReport.collapsedPolygons},
             {"duplicates", in.baked.prepareReport.duplicatePolygons},
             {"merged_sheets", in.baked.prepareReport.mergedSheets},
+            {"edge_crossings", in.baked.prepareReport.edgeCrossings},
             {"joined_pairs", in.baked.prepareReport.joinedPairs}};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "meshing/edge_division.h"
-#include "meshing/vertex_index.h"
+#include "meshing/spatial_index.h"
 #include "scene/scene.h"
 
 #include <cstdint>

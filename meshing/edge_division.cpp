@@ -1,5 +1,6 @@
 #include "meshing/edge_division.h"
 
+#include "meshing/edge_crossings.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/prepare.h"
 
@@ -14,18 +15,6 @@ namespace lambert {
 namespace {
 
 using Key = std::pair<std::uint32_t, std::uint32_t>;
-
-std::vector<Key> uniqueEdges(const Scene& scene) {
-    std::vector<Key> edges;
-    edges.reserve(scene.polygons.size() * 3);
-    for (const Polygon& polygon : scene.polygons)
-        for (int k = 0; k < polygon.size(); ++k)
-            edges.push_back(edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
-                                    polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]));
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    return edges;
-}
 
 std::uint32_t partsFor(double length, double target) {
     // A hair above a whole number of parts must not cost a whole part.

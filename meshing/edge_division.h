@@ -1,6 +1,6 @@
 #pragma once
 
-#include "meshing/vertex_index.h"
+#include "meshing/spatial_index.h"
 #include "scene/scene.h"
 
 #include <array>

@@ -1,5 +1,6 @@
 #include "meshing/prepare.h"
 
+#include "meshing/edge_crossings.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/weld.h"
 
@@ -157,6 +158,11 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     if (options.joinTriangles) counts.joinedPairs = joinTriangles(prepared);
     if (options.mergeCoincident) mergeCoincident(prepared, counts);
     compactPositions(prepared);
+    if (options.addCrossings) {
+        const std::vector<glm::vec3> crossings = edgeCrossings(prepared, tolerance);
+        prepared.positions.insert(prepared.positions.end(), crossings.begin(), crossings.end());
+        counts.edgeCrossings = crossings.size();
+    }
     if (report != nullptr) *report = counts;
     return prepared;
 }

@@ -9,6 +9,7 @@ namespace lambert {
 struct PrepareOptions {
     bool joinTriangles = true;   //!< coplanar triangle pairs that make a good quad become one polygon
     bool mergeCoincident = true; //!< polygons with the same vertices become one, with what each shows on its side
+    bool addCrossings = true;    //!< points where edges cross become vertices, see edgeCrossings
 };
 
 struct PrepareReport {
@@ -17,6 +18,7 @@ struct PrepareReport {
         0; //!< dropped: once their vertices are welded nothing is left, or a needle without height
     std::size_t duplicatePolygons = 0; //!< dropped: the same vertices and the same side as another
     std::size_t mergedSheets = 0;      //!< back to back with another: became the back of that one
+    std::size_t edgeCrossings = 0;     //!< vertices added where edges cross
     std::size_t joinedPairs = 0;       //!< triangle pairs that became quads
 };
 
@@ -25,7 +27,8 @@ float weldTolerance(const Scene& scene);
 
 /// The scene as meshing and ray casting use it: equal vertices welded, unused ones removed, polygons that vanish dropped,
 /// polygons on the same vertices merged (a ray must not choose between them), triangle pairs joined. Every polygon knows
-/// the material of its back. Polygons stay in the file's order.
+/// the material of its back. Polygons stay in the file's order. After the vertices of the polygons, `positions` holds the
+/// points where edges cross, which meshing inserts into these edges.
 Scene prepareScene(const Scene& scene, const PrepareOptions& options = {}, PrepareReport* report = nullptr);
 
 } // namespace lambert

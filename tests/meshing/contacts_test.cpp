@@ -124,14 +124,43 @@ TEST(BuildPatchMesh, DividesUnderBoxesThatShareAnEdgeOrACorner) {
     }
 }
 
-TEST(BuildPatchMesh, IgnoresAndCountsContactsThatCross) {
+TEST(BuildPatchMesh, DividesWhereTheOutlinesOfBoxesCross) {
     const Scene scene = floorWithBoxes({{{{1, 1, 0}, {2, 2, 1}}}, {{{1.5F, 1.5F, 0}, {2.5F, 2.5F, 1}}}});
     for (const double length : {5.0, 0.3}) {
         MeshReport report;
         const PatchMesh mesh = meshWithLength(scene, length, &report);
         expectSoundMesh(scene, mesh);
-        EXPECT_EQ(report.ignoredContactPolygons, 1U);
+        EXPECT_EQ(report.ignoredContactPolygons, 0U);
         EXPECT_EQ(report.undividedPolygons, 0U);
+        EXPECT_NEAR(floorAreaWithin(mesh, {1, 1}, {2, 2}), 1.0, 1e-5); // floats of 4 m
+        EXPECT_NEAR(floorAreaWithin(mesh, {1.5F, 1.5F}, {2.5F, 2.5F}), 1.0, 1e-5);
+    }
+}
+
+TEST(BuildPatchMesh, DividesUnderABoxThatStandsAcrossTiles) {
+    // 4 × 4 tiles of 1 m; the box covers parts of nine of them.
+    Scene scene = emptyScene();
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x) {
+            const auto fx = static_cast<float>(x);
+            const auto fy = static_cast<float>(y);
+            addPolygon(scene, Quad{{{fx, fy, 0}, {fx + 1, fy, 0}, {fx + 1, fy + 1, 0}, {fx, fy + 1, 0}}});
+        }
+    addBox(scene, {0.6F, 0.7F, 0}, {2.3F, 2.9F, 1}, false);
+    scene = prepareScene(scene);
+    for (const double length : {5.0, 0.3, 0.1}) {
+        MeshReport report;
+        const PatchMesh mesh = meshWithLength(scene, length, &report);
+        expectSoundMesh(scene, mesh);
+        expectNoTVertex(scene, mesh);
+        double below = 0.0;
+        for (std::size_t i = 0; i < mesh.size(); ++i) {
+            const glm::vec3 c = mesh.centroid[i];
+            if (mesh.polygon[i] < 16 && c.x > 0.6F && c.x < 2.3F && c.y > 0.7F && c.y < 2.9F)
+                below += static_cast<double>(mesh.area[i]);
+        }
+        EXPECT_NEAR(below, 1.7 * 2.2, 1e-5) << length; // no patch lies half under the box; floats of 4 m
+        EXPECT_EQ(report.contactPolygons, 8U); // the ninth is covered whole
     }
 }
 
