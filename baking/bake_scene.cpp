@@ -1,11 +1,11 @@
 #include "baking/bake_scene.h"
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 namespace lambert {
@@ -19,20 +19,6 @@ constexpr double kBackFaceWarning = 0.01;
 /// inside of one into the other.)
 constexpr double kInside = 0.8;
 constexpr double kUndividedWarning = 1e-3; ///< of the area
-
-class Stopwatch {
-public:
-    /// Seconds since the last call.
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const std::chrono::duration<double> elapsed = now - last_;
-        last_ = now;
-        return elapsed.count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void requireLight(const Scene& scene) {
     const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {

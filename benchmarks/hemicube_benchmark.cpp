@@ -3,6 +3,7 @@
 /// "Bare" gets its directions from memory and throws the hits away; a hemicube row also makes the directions, finds the
 /// patches and sums the delta form factors.
 
+#include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
@@ -13,13 +14,11 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 namespace lambert {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int kResolution = 128;
 constexpr std::size_t kRows = 24;
 
@@ -111,14 +110,12 @@ void compare(benchmark::State& state, const Scene& input, std::size_t patches) {
         for (std::size_t k = 0; k < kRows; ++k) {
             const auto patch = static_cast<std::uint32_t>(k * mesh.size() / kRows);
             const std::vector<RayPacket> packets = packetsOf(hemicube, mesh, patch);
-            const auto start = Clock::now();
+            Stopwatch watch;
             hits += bare.trace(hemicube.origin(patch), packets);
-            const auto middle = Clock::now();
+            bareSeconds += watch.lap();
             hemicube.row(patch, accumulator);
             accumulator.take(row);
-            const auto end = Clock::now();
-            bareSeconds += std::chrono::duration<double>(middle - start).count();
-            rowSeconds += std::chrono::duration<double>(end - middle).count();
+            rowSeconds += watch.lap();
             traced += hemicube.raysPerRow();
         }
     }

@@ -7,12 +7,12 @@
 #include "cli/terminal_text.h"
 
 #include "baking/exposure.h"
+#include "core/stopwatch.h"
 #include "rendering/render.h"
 
 #include <fmt/format.h>
 
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -36,14 +36,6 @@ struct BakeArguments {
 struct Output {
     std::filesystem::path path;
     BakedFormat format;
-};
-
-class Clock {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 std::vector<Output> outputs(const BakeArguments& a) {
@@ -109,7 +101,7 @@ void printSummary(const BakedScene& baked, float exposure, double seconds) {
 }
 
 ExitCode bake(const BakeArguments& a) {
-    const Clock total;
+    const Stopwatch total;
     const std::vector<Output> targets = outputs(a);
     const std::optional<float> typed = typedExposure(a.exposure);
     checkPicture(a.picture);
@@ -120,7 +112,7 @@ ExitCode bake(const BakeArguments& a) {
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
 
-    const Clock reading;
+    const Stopwatch reading;
     ReadResult read = readScene(a.scene);
     const double readSeconds = reading.seconds();
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
@@ -136,7 +128,7 @@ ExitCode bake(const BakeArguments& a) {
                                baked.seconds.formFactors, baked.solution.iterations, baked.solution.residual));
 
     const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
-    const Clock writing;
+    const Stopwatch writing;
     for (const Output& target : targets)
         writeBaked(baked.baked, target.path, target.format, {quantityOf(a), exposure, LAMBERT_VERSION});
     std::optional<Picture> shot;

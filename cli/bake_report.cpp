@@ -107,7 +107,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["seed"] = in.run.seed;
     report["version"] = LAMBERT_VERSION;
     report["camera"] = in.picture ? cameraJson(*in.picture) : Json(nullptr);
-    report["exposure_ev"] = in.exposure;
+    report["exposure_ev"] = in.exposure ? Json(*in.exposure) : Json(nullptr);
     report["input"] = inputJson(in);
     report["mesh"] = meshJson(baked);
     report["form_factors"] = {{"entries", baked.rows.entries},

@@ -29,7 +29,7 @@ struct BakeReportInput {
     const TransportArguments& transport;
     const RunArguments& run;
     std::optional<Picture> picture;
-    double exposure = 0.0;
+    std::optional<double> exposure; //!< EV; none where nothing is shown
     double readSeconds = 0.0, writeSeconds = 0.0, totalSeconds = 0.0;
 };
 

@@ -7,6 +7,7 @@
 #include "cli/terminal_text.h"
 
 #include "baking/probe.h"
+#include "core/stopwatch.h"
 #include "core/whole_file.h"
 
 #include <fmt/format.h>
@@ -103,8 +104,10 @@ ExitCode probe(const ProbeArguments& a) {
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
+    const Stopwatch total;
     const std::vector<ProbePoint> points = readPoints(a.points);
     const ReadResult read = readScene(a.scene);
+    const double readSeconds = total.seconds();
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
@@ -113,12 +116,14 @@ ExitCode probe(const ProbeArguments& a) {
     if (inSpace > 0)
         logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));
     const std::string text = table(points, readings);
+    const Stopwatch writing;
     if (a.output.empty())
         fmt::print("{}", text);
     else
         writeWholeFile(a.output, text);
     if (!a.run.json.empty())
-        writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, 0.0, 0.0, 0.0, 0.0}),
+        writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt, readSeconds,
+                              writing.seconds(), total.seconds()}),
                   a.run.json);
     return ExitCode::Ok;
 }

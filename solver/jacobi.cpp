@@ -2,10 +2,10 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 
 #include <glm/geometric.hpp>
 
-#include <chrono>
 #include <cmath>
 
 namespace lambert {
@@ -36,7 +36,7 @@ double squaredNorm(const PatchMesh& mesh, const std::vector<RgbSum>& values) {
 
 RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& matrix, const JacobiOptions& options,
                               Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::size_t count = mesh.size();
     RadiositySolution solution;
     solution.irradiance.assign(count, RgbSum(0.0));
@@ -54,10 +54,9 @@ RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& mat
             change[i] = next - solution.radiosity[i];
             solution.radiosity[i] = next;
         }
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         solution.iterations = iteration;
         solution.residual = std::sqrt(squaredNorm(mesh, change)) / emittedNorm;
-        solution.history.push_back({iteration, solution.residual, elapsed.count()});
+        solution.history.push_back({iteration, solution.residual, watch.seconds()});
         progress.advance();
         if (solution.residual <= options.tolerance) break;
     }
