@@ -119,6 +119,66 @@ private:
     PatchMesh mesh_;
 };
 
+/// A polygon's sides with all vertices on them, and what follows from them.
+struct DividedBorder {
+    std::array<EdgeDivision::Side, 4> sides;
+    FaceOutline outline;
+    bool whole = true; ///< no vertex but the corners
+
+    DividedBorder(const Scene& scene, const Polygon& polygon, const EdgeDivision& division,
+                  const PlanarContact* contact) {
+        for (int k = 0; k < polygon.size(); ++k) {
+            auto& side = sides[static_cast<std::size_t>(k)];
+            side = division.side(polygon, k);
+            outline.border.insert(outline.border.end(), side.vertices.begin(), side.vertices.end() - 1);
+            whole = whole && side.vertices.size() == 2;
+        }
+        if (contact != nullptr) outline.contacts = contactLines(*contact, scene, division);
+        whole = whole && outline.contacts.empty();
+    }
+
+    /// Whether a quad can be a grid: nothing stands on it, and opposite sides are divided alike.
+    bool isGrid() const {
+        const auto alike = [this](std::size_t k) {
+            return sides[k].segments == 1 && sides[k + 2].segments == 1 &&
+                   sides[k].vertices.size() == sides[k + 2].vertices.size();
+        };
+        return outline.contacts.empty() && alike(0) && alike(1);
+    }
+};
+
+void dividePolygon(std::uint32_t index, const Scene& scene, const EdgeDivision& division, const PlanarContact* contact,
+                   PatchMeshBuilder& builder, MeshReport& report) {
+    const Polygon& polygon = scene.polygons[index];
+    DividedBorder border(scene, polygon, division, contact);
+    if (border.whole) {
+        builder.addWhole(index);
+        return;
+    }
+    const auto& sides = border.sides;
+    if (polygon.isQuad() && border.isGrid()) {
+        const auto faces =
+            gridFace({sides[0].vertices, sides[1].vertices, sides[2].vertices, sides[3].vertices}, builder.positions());
+        builder.addGrid(index, faces, sides[0].vertices.size() - 1, sides[1].vertices.size() - 1);
+        return;
+    }
+    FaceOutline& outline = border.outline;
+    outline.frame = planeFrame(scene, polygon);
+    auto faces = triangulateFace(outline, report.patchLength, builder.positions());
+    if (!outline.contacts.empty()) ++(faces ? report.contactPolygons : report.ignoredContactPolygons);
+    if (!faces && !outline.contacts.empty()) {
+        outline.contacts.clear();
+        faces = triangulateFace(outline, report.patchLength, builder.positions());
+    }
+    if (faces) {
+        builder.addFaces(index, *faces);
+    } else {
+        ++report.undividedPolygons;
+        report.undividedArea += static_cast<double>(glm::length(areaVector(scene, polygon)));
+        builder.addWhole(index);
+    }
+}
+
 /// One division of the scene at a given target length.
 PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector<PlanarContact>& contacts,
                  double length, Progress& progress, MeshReport& report) {
@@ -126,51 +186,11 @@ PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector
     report.patchLength = length;
     PatchMeshBuilder builder(scene, report);
     const EdgeDivision division(scene, index, length, builder.positions());
-    auto contact = contacts.begin();
+    auto contact = contacts.begin(); // in the polygons' order, like the loop
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
         if (i % 1024 == 0) progress.throwIfCancelled();
-        const Polygon& polygon = scene.polygons[i];
-        std::array<EdgeDivision::Side, 4> sides;
-        FaceOutline outline;
-        bool divided = false;
-        bool inserted = false;
-        for (int k = 0; k < polygon.size(); ++k) {
-            auto& side = sides[static_cast<std::size_t>(k)];
-            side = division.side(polygon, k);
-            outline.border.insert(outline.border.end(), side.vertices.begin(), side.vertices.end() - 1);
-            divided = divided || side.vertices.size() > 2;
-            inserted = inserted || side.segments > 1;
-        }
-        while (contact != contacts.end() && contact->polygon < i) ++contact;
-        if (contact != contacts.end() && contact->polygon == i)
-            outline.contacts = contactLines(*contact, scene, division);
-        if (!divided && outline.contacts.empty()) {
-            builder.addWhole(i);
-            continue;
-        }
-        if (polygon.isQuad() && !inserted && outline.contacts.empty() &&
-            sides[0].vertices.size() == sides[2].vertices.size() &&
-            sides[1].vertices.size() == sides[3].vertices.size()) {
-            const auto faces = gridFace({sides[0].vertices, sides[1].vertices, sides[2].vertices, sides[3].vertices},
-                                        builder.positions());
-            builder.addGrid(i, faces, sides[0].vertices.size() - 1, sides[1].vertices.size() - 1);
-            continue;
-        }
-        outline.frame = planeFrame(scene, polygon);
-        auto faces = triangulateFace(outline, length, builder.positions());
-        if (faces && !outline.contacts.empty()) ++report.contactPolygons;
-        if (!faces && !outline.contacts.empty()) {
-            ++report.ignoredContactPolygons;
-            outline.contacts.clear();
-            faces = triangulateFace(outline, length, builder.positions());
-        }
-        if (faces) {
-            builder.addFaces(i, *faces);
-        } else {
-            ++report.undividedPolygons;
-            report.undividedArea += static_cast<double>(glm::length(areaVector(scene, polygon)));
-            builder.addWhole(i);
-        }
+        const bool touched = contact != contacts.end() && contact->polygon == i;
+        dividePolygon(i, scene, division, touched ? &*contact++ : nullptr, builder, report);
     }
     return builder.finish();
 }
