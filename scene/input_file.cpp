@@ -1,9 +1,11 @@
 #include "scene/input_file.h"
 
 #include "core/error.h"
+#include "scene/scene_reader.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -17,6 +19,27 @@ std::string_view shortened(std::string_view text, std::size_t length) {
     if (text.size() <= length) return text;
     while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
     return text.substr(0, length);
+}
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return text;
+}
+
+/// The entry of `folder` that has this name but for the case of its letters, or the name itself.
+std::filesystem::path matchCase(const std::filesystem::path& folder, const std::filesystem::path& name) {
+    std::error_code error;
+    const std::filesystem::path here = folder.empty() ? std::filesystem::path(".") : folder;
+    if (std::filesystem::exists(here / name, error)) return name;
+    std::filesystem::path found = name;
+    std::size_t matches = 0;
+    for (std::filesystem::directory_iterator entry(here, error), end; !error && entry != end; entry.increment(error)) {
+        if (lowerCase(entry->path().filename().string()) != lowerCase(name.string())) continue;
+        // The smallest of several: folders have no order of their own.
+        if (matches++ == 0 || entry->path().filename() < found) found = entry->path().filename();
+    }
+    return found;
 }
 
 bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
@@ -42,6 +65,24 @@ std::string readInputFile(const std::filesystem::path& path) {
         throw InputError(path.string() + ": cannot be read to its end");
     if (content.empty()) throw InputError(path.string() + ": the file is empty");
     return content;
+}
+
+std::filesystem::path namedFile(const std::filesystem::path& folder, const std::string& name,
+                                const ReadOptions& options) {
+    std::string forward = name;
+    std::error_code error;
+    if (!std::filesystem::exists(folder / name, error)) std::replace(forward.begin(), forward.end(), '\\', '/');
+    std::filesystem::path path = folder;
+    for (const std::filesystem::path& part : std::filesystem::path(forward)) path /= matchCase(path, part);
+    if (options.allowOutsideFiles) return path;
+
+    const auto home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error);
+    const auto target = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+    const auto [inHome, inTarget] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
+    if (error || inHome != home.end())
+        throw InputError(fmt::format("{} lies outside the scene's folder; --allow-outside-files reads it all the same",
+                                     inQuotes(name)));
+    return path;
 }
 
 std::string inQuotes(std::string_view text) {

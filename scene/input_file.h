@@ -10,6 +10,14 @@ namespace lambert {
 /// regular file, unreadable or empty.
 std::string readInputFile(const std::filesystem::path& path);
 
+struct ReadOptions;
+
+/// The path of a file that a scene names, relative to the scene's `folder`. Backslashes of Windows and another case of
+/// letters are forgiven if that finds a file; the result need not exist. Throws InputError if it lies outside `folder` and
+/// `options.allowOutsideFiles` is not set.
+std::filesystem::path namedFile(const std::filesystem::path& folder, const std::string& name,
+                                const ReadOptions& options);
+
 /// `text` in double quotes for a message of one line: at most 60 characters, control characters made
 /// harmless.
 std::string inQuotes(std::string_view text);

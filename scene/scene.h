@@ -1,9 +1,13 @@
 #pragma once
 
+#include "scene/texture.h"
+
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,22 +19,53 @@ using Rgb = glm::vec3;
 /// Marks "none" wherever an index is expected.
 inline constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+/// What texture coordinates beyond [0, 1] mean.
+enum class TextureWrap : std::uint8_t { Repeat, Mirror, Clamp };
+
+/// A texture as a material uses it.
+struct TextureUse {
+    std::uint32_t texture = kNone; //!< into Scene::textures; none: white and opaque
+    TextureWrap wrapU = TextureWrap::Repeat;
+    TextureWrap wrapV = TextureWrap::Repeat;
+
+    explicit operator bool() const { return texture != kNone; }
+    bool operator==(const TextureUse&) const = default;
+};
+
 /// A diffuse surface.
 struct Material {
     std::string name;
-    Rgb reflectance{0.5F};     //!< per channel, 0 to 0.99
-    Rgb emittedRadiance{0.0F}; //!< L_e, >= 0, per m² and sr; the emitted radiosity is π L_e
+    Rgb reflectance{0.5F};     //!< per channel, 0 to 0.99; times its texture and the polygon's tint
+    Rgb emittedRadiance{0.0F}; //!< L_e, >= 0, per m² and sr; the emitted radiosity is π L_e; times its texture
     bool twoSided = false;     //!< reflects and emits on the back as well
+
+    TextureUse reflectanceTexture{};
+    TextureUse emissionTexture{};
+    TextureUse opacityTexture{}; //!< its opacity counts, with the texture coordinates of the reflectance
+    float opacityCutoff = 0.0F;  //!< where the opacity texture is below it, there is a hole; 0: nowhere
+
+    bool isTextured() const { return reflectanceTexture || emissionTexture || hasHoles(); }
+    bool hasHoles() const { return opacityTexture && opacityCutoff > 0.0F; }
+};
+
+/// What varies over a polygon, given at its corners (a triangle's fourth is unused) and linear on its triangles:
+/// (0, 1, 2), or of a quad (0, 1, 3) and (2, 3, 1), as in polygonPoint.
+struct SurfaceCorners {
+    std::array<glm::vec2, 4> uv{};         //!< of reflectance and opacity; (0, 0) is the image's upper left corner
+    std::array<glm::vec2, 4> emissionUv{}; //!< of emission
+    std::array<Rgb, 4> tint{Rgb(1.0F), Rgb(1.0F), Rgb(1.0F), Rgb(1.0F)}; //!< factor of the reflectance
 };
 
 /// A triangle or a convex planar quad, its front counter-clockwise.
 struct Polygon {
     /// Into Scene::positions; a triangle ends in kNone.
     std::array<std::uint32_t, 4> vertices{kNone, kNone, kNone, kNone};
-    std::uint32_t material = 0; //!< of the front, into Scene::materials
-    std::uint32_t node = 0;     //!< into Scene::nodes
+    std::uint32_t material = 0;    //!< of the front, into Scene::materials
+    std::uint32_t node = 0;        //!< into Scene::nodes
+    std::uint32_t surface = kNone; //!< into Scene::surfaces; none: nothing varies over it
     /// Of the back; none: black. Set where scenes are prepared, see prepareScene.
     std::uint32_t backMaterial = kNone;
+    std::uint32_t backSurface = kNone; //!< into Scene::surfaces, at the same corners; with backMaterial
 
     bool isQuad() const { return vertices[3] != kNone; }
     int size() const { return isQuad() ? 4 : 3; }
@@ -45,13 +80,28 @@ struct Camera {
     float verticalFov = 0.8F;               //!< radians, full angle, 0 to π
 };
 
-/// Source polygons in world space, in metres, with their materials and cameras. Immutable once read.
+/// A light without area, as KHR_lights_punctual defines it.
+struct PunctualLight {
+    enum class Kind : std::uint8_t { Point, Spot, Directional };
+    std::string name;
+    Kind kind = Kind::Point;
+    glm::vec3 position{0.0F};               //!< metres; not of a directional light
+    glm::vec3 direction{0.0F, 0.0F, -1.0F}; //!< unit length, the way the light travels; not of a point light
+    Rgb intensity{1.0F};                    //!< per sr (candela); of a directional light per m² across (lux)
+    float innerConeAngle = 0.0F;            //!< radians, half angle; full intensity inside; of a spot
+    float outerConeAngle = 0.785398F;       //!< radians, half angle, at most π/2; nothing outside; of a spot
+};
+
+/// Source polygons in world space, in metres, with their materials, lights and cameras. Immutable once read.
 struct Scene {
     std::vector<glm::vec3> positions;
     std::vector<Polygon> polygons;
     std::vector<Material> materials;
     std::vector<std::string> nodes; //!< names of the groups, objects or glTF nodes that polygons belong to
     std::vector<Camera> cameras;
+    std::vector<SurfaceCorners> surfaces; //!< of the polygons that need them
+    std::vector<std::shared_ptr<const Texture>> textures;
+    std::vector<PunctualLight> lights;
 };
 
 /// The corner `k` of a polygon.

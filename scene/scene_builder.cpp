@@ -24,6 +24,16 @@ constexpr double kMinCornerSine = 1e-5;  // flatter corners would leave a quad's
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
+SceneBuilder::CornerSurface finite(SceneBuilder::CornerSurface corner) {
+    const auto clean = [](float value) { return std::isfinite(value) ? value : 0.0F; };
+    for (int k = 0; k < 2; ++k) {
+        corner.uv[k] = clean(corner.uv[k]);
+        corner.emissionUv[k] = clean(corner.emissionUv[k]);
+    }
+    for (int k = 0; k < 3; ++k) corner.tint[k] = std::clamp(clean(corner.tint[k]), 0.0F, 1.0F);
+    return corner;
+}
+
 /// As the kernels see it: their square of the area must be a normal number.
 bool hasArea(const Scene& scene, const Polygon& polygon) {
     const glm::vec3 area = areaVector(scene, polygon);
@@ -72,8 +82,7 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
 
 } // namespace
 
-SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options)
-    : file_(std::move(file)), twoSided_(options.twoSided) {}
+SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
 
 std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     auto& positions = result_.scene.positions;
@@ -97,7 +106,7 @@ std::uint32_t SceneBuilder::addMaterial(Material material) {
 
     material.reflectance = reflectance;
     material.emittedRadiance = emittedRadiance;
-    material.twoSided = material.twoSided || twoSided_;
+    material.twoSided = material.twoSided || options_.twoSided;
     result_.scene.materials.push_back(std::move(material));
     return static_cast<std::uint32_t>(result_.scene.materials.size() - 1);
 }
@@ -109,9 +118,54 @@ std::uint32_t SceneBuilder::addNode(std::string name) {
 
 void SceneBuilder::addCamera(Camera camera) { result_.scene.cameras.push_back(std::move(camera)); }
 
+void SceneBuilder::addLight(PunctualLight light) { result_.scene.lights.push_back(std::move(light)); }
+
 void SceneBuilder::warn(const std::string& text) { result_.report.warnings.push_back(file_ + ": " + text); }
 
+void SceneBuilder::warnUnlessStrict(const std::string& text) {
+    if (options_.strict) throw InputError(file_ + ": " + text);
+    warn(text);
+}
+
+template <typename Read>
+std::uint32_t SceneBuilder::addTextureOnce(const std::string& key, const std::string& name,
+                                           const std::string& replacement, Read&& read) {
+    const auto [entry, isNew] = textures_.try_emplace(key, kNone);
+    if (!isNew) return entry->second;
+    try {
+        entry->second = addTexture(read());
+    } catch (const InputError& error) {
+        warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
+    }
+    return entry->second;
+}
+
+std::uint32_t SceneBuilder::addTextureFile(const std::filesystem::path& folder, const std::string& name,
+                                           TextureContent content, const std::string& replacement) {
+    const std::string key = fmt::format("{} {}", static_cast<int>(content), (folder / name).string());
+    return addTextureOnce(key, name, replacement,
+                          [&] { return readTexture(namedFile(folder, name, options_), content); });
+}
+
+std::uint32_t SceneBuilder::addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name,
+                                            TextureContent content, const std::string& replacement) {
+    const std::string key = fmt::format("{} {}", static_cast<int>(content), name);
+    return addTextureOnce(key, name, replacement, [&] { return readTexture(bytes, name, content); });
+}
+
+std::uint32_t SceneBuilder::addTexture(std::shared_ptr<const Texture> texture) {
+    result_.scene.textures.push_back(std::move(texture));
+    return static_cast<std::uint32_t>(result_.scene.textures.size() - 1);
+}
+
+const Texture& SceneBuilder::texture(std::uint32_t index) const { return *result_.scene.textures[index]; }
+
 void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node) {
+    addPolygon(vertices, material, node, {});
+}
+
+void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,
+                              std::span<const CornerSurface> surface) {
     ReadReport& report = result_.report;
     const auto& positions = result_.scene.positions;
     ++report.inputPolygons;
@@ -123,15 +177,22 @@ void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint
 
     const auto coincide = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
     corners_.clear();
-    for (const std::uint32_t vertex : vertices)
-        if (corners_.empty() || !coincide(corners_.back(), vertex)) corners_.push_back(vertex);
-    while (corners_.size() > 1 && coincide(corners_.front(), corners_.back())) corners_.pop_back();
+    surface_.clear();
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        if (!corners_.empty() && coincide(corners_.back(), vertices[k])) continue;
+        corners_.push_back(vertices[k]);
+        if (!surface.empty()) surface_.push_back(finite(surface[k]));
+    }
+    while (corners_.size() > 1 && coincide(corners_.front(), corners_.back())) {
+        corners_.pop_back();
+        if (!surface_.empty()) surface_.pop_back();
+    }
 
     material_ = material;
     node_ = node;
     bool kept = false;
     if (corners_.size() == 3) {
-        kept = addTriangle(corners_[0], corners_[1], corners_[2]);
+        kept = addTriangle(0, 1, 2);
     } else if (corners_.size() == 4) {
         kept = addQuad();
     } else if (corners_.size() > 4) {
@@ -141,17 +202,33 @@ void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint
 }
 
 bool SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return append({{a, b, c, kNone}, material_, node_});
-}
-
-bool SceneBuilder::append(const Polygon& polygon) {
-    if (!hasArea(result_.scene, polygon)) return false;
-    result_.scene.polygons.push_back(polygon);
+    Polygon triangle{{corners_[a], corners_[b], corners_[c], kNone}, material_, node_};
+    if (!hasArea(result_.scene, triangle)) return false;
+    triangle.surface = cornerSurface(a, b, c, kNone);
+    append(triangle);
     return true;
 }
 
+void SceneBuilder::append(const Polygon& polygon) { result_.scene.polygons.push_back(polygon); }
+
+/// The surface of a polygon with these corners, into Scene::surfaces.
+std::uint32_t SceneBuilder::cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    if (surface_.empty()) return kNone;
+    SurfaceCorners result;
+    const std::array corners{a, b, c, d};
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (corners[k] == kNone) continue;
+        const CornerSurface& source = surface_[corners[k]];
+        result.uv[k] = source.uv;
+        result.emissionUv[k] = source.emissionUv;
+        result.tint[k] = source.tint;
+    }
+    result_.scene.surfaces.push_back(result);
+    return static_cast<std::uint32_t>(result_.scene.surfaces.size() - 1);
+}
+
 bool SceneBuilder::addQuad() {
-    const Polygon quad{{corners_[0], corners_[1], corners_[2], corners_[3]}, material_, node_};
+    Polygon quad{{corners_[0], corners_[1], corners_[2], corners_[3]}, material_, node_};
     if (!hasArea(result_.scene, quad)) return false;
 
     std::array<glm::dvec3, 4> points;
@@ -161,11 +238,15 @@ bool SceneBuilder::addQuad() {
 
     const double diagonal02 = glm::distance(points[0], points[2]);
     const double diagonal13 = glm::distance(points[1], points[3]);
-    if (offPlane(points, normal) <= kMaxOffPlane * std::max(diagonal02, diagonal13)) return append(quad);
+    if (offPlane(points, normal) <= kMaxOffPlane * std::max(diagonal02, diagonal13)) {
+        quad.surface = cornerSurface(0, 1, 2, 3);
+        append(quad);
+        return true;
+    }
 
-    const std::size_t first = diagonal02 <= diagonal13 ? 0 : 1;
-    const bool kept0 = addTriangle(corners_[first], corners_[first + 1], corners_[first + 2]);
-    const bool kept1 = addTriangle(corners_[first], corners_[first + 2], corners_[(first + 3) % 4]);
+    const std::uint32_t first = diagonal02 <= diagonal13 ? 0 : 1;
+    const bool kept0 = addTriangle(first, first + 1, first + 2);
+    const bool kept1 = addTriangle(first, first + 2, (first + 3) % 4);
     if (kept0 || kept1) ++result_.report.splitPolygons;
     return kept0 || kept1;
 }
@@ -184,7 +265,7 @@ bool SceneBuilder::addSplit() {
         for (std::uint32_t k = 1; k + 1 < corners_.size(); ++k) triangles->push_back({0, k, k + 1});
     }
     bool kept = false;
-    for (const auto& [a, b, c] : *triangles) kept |= addTriangle(corners_[a], corners_[b], corners_[c]);
+    for (const auto& [a, b, c] : *triangles) kept |= addTriangle(a, b, c);
     if (!kept) return false;
     ++result_.report.splitPolygons;
     if (fan) ++fans_;

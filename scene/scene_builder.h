@@ -4,7 +4,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <filesystem>
+#include <map>
 #include <span>
+#include <string>
 
 namespace lambert {
 
@@ -27,30 +30,63 @@ public:
     std::uint32_t addNode(std::string name);
 
     void addCamera(Camera camera);
+    void addLight(PunctualLight light);
+
+    /// Adds an image and returns its index; the same file and content is read only once. If it cannot be used: kNone and
+    /// a warning that ends in `replacement` ("the material's constant reflectance is used"), or InputError under `strict`.
+    /// `name` is as the scene's file has it, relative to `folder`.
+    std::uint32_t addTextureFile(const std::filesystem::path& folder, const std::string& name, TextureContent content,
+                                 const std::string& replacement);
+    /// The same for an image inside the scene's file.
+    std::uint32_t addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name, TextureContent content,
+                                  const std::string& replacement);
+    /// Adds an image that a reader made.
+    std::uint32_t addTexture(std::shared_ptr<const Texture> texture);
+    /// An image added before.
+    const Texture& texture(std::uint32_t index) const;
 
     /// Adds a polygon of the file, front counter-clockwise; the indices are what the other functions
     /// returned. Polygons with non-finite coordinates or without area are dropped; convex planar quads stay
     /// what they are; all others are split into triangles.
     void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node);
 
+    /// What varies over a polygon, at one corner; see SurfaceCorners.
+    struct CornerSurface {
+        glm::vec2 uv{0.0F}, emissionUv{0.0F};
+        Rgb tint{1.0F};
+    };
+    /// The same with `surface` (#vertices) at the corners. Coordinates or tints that are not finite count as 0.
+    void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,
+                    std::span<const CornerSurface> surface);
+
     /// Adds a line to the report.
     void warn(const std::string& text);
+    /// Adds a line to the report, or throws it as InputError under `strict`: for what the scene names but does not have.
+    void warnUnlessStrict(const std::string& text);
 
     /// The scene and the report; the builder is empty afterwards. Throws InputError if no polygon is left.
     ReadResult finish();
 
 private:
-    bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c); //!< into corners_
     bool addQuad();
     bool addSplit();
-    bool append(const Polygon& polygon);
+    void append(const Polygon& polygon);
+
+    std::uint32_t cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
+    template <typename Read>
+    std::uint32_t addTextureOnce(const std::string& key, const std::string& name, const std::string& replacement,
+                                 Read&& read);
 
     std::string file_;
-    bool twoSided_;
+    ReadOptions options_;
     ReadResult result_;
+    std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;
-    std::vector<std::uint32_t> corners_; //!< of the polygon at work, without repeated vertices
-    std::uint32_t material_ = 0;         //!< of the polygon at work
+    // Of the polygon at work, without repeated vertices:
+    std::vector<std::uint32_t> corners_; //!< the vertices
+    std::vector<CornerSurface> surface_; //!< #corners_, or empty
+    std::uint32_t material_ = 0;
     std::uint32_t node_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "scene/scene.h"
 
 #include <cstddef>
@@ -10,8 +11,11 @@
 namespace lambert {
 
 struct ReadOptions {
-    double metresPerUnit = 1.0; //!< of OBJ files, > 0; must be 1 for glTF, which is always in metres
-    bool twoSided = false;      //!< makes every material two-sided
+    double metresPerUnit = 1.0;     //!< > 0; must be 1 for glTF, which is always in metres
+    bool twoSided = false;          //!< makes every material two-sided
+    bool strict = false;            //!< what would be replaced with a warning (a missing image) is an InputError
+    bool allowOutsideFiles = false; //!< a scene may name files outside its own folder
+    Progress* progress = nullptr;   //!< of huge files
 };
 
 /// What a reader had to leave out or change.
@@ -28,12 +32,15 @@ struct ReadResult {
     ReadReport report;
 };
 
-/// Reads a scene by the extension of its name: .obj, .gltf or .glb. All lengths of the result are metres.
+/// Reads a scene by the extension of its name: .obj, .gltf, .glb, .ply, .stl or .mgf. All lengths of the result are metres.
 /// Throws InputError, with file and place, if the file cannot be used; UsageError for `metresPerUnit` with glTF.
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The readers behind readScene.
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options);
 ReadResult readGltf(const std::filesystem::path& path, const ReadOptions& options);
+ReadResult readPly(const std::filesystem::path& path, const ReadOptions& options);
+ReadResult readStl(const std::filesystem::path& path, const ReadOptions& options);
+ReadResult readMgf(const std::filesystem::path& path, const ReadOptions& options);
 
 } // namespace lambert

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+/// An image on a surface: texels are constant squares, row 0 is at the top. Immutable.
+class Texture {
+public:
+    /// `rgba`: 4 bytes per texel, row by row; colours in sRGB, opacity linear.
+    Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba);
+    /// `rgba`: linear and finite, one per texel, row by row; for images of more than 8 bits.
+    Texture(std::string name, int width, int height, std::vector<glm::vec4> rgba);
+
+    const std::string& name() const { return name_; } //!< for messages: the file's name
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// Linear colour and opacity. 0 <= x < width, 0 <= y < height.
+    glm::vec4 texel(int x, int y) const;
+
+private:
+    std::string name_;
+    int width_, height_;
+    std::vector<std::uint8_t> bytes_;
+    std::vector<glm::vec4> floats_; //!< one of the two is empty
+};
+
+/// How the numbers of an image become a texture.
+enum class TextureContent {
+    Colour,    //!< 8-bit images are sRGB; opacity is the alpha channel, 1 without one
+    GreyAlpha, //!< for opacity maps: opacity is the alpha channel, or without one the (undecoded) grey value
+    Linear     //!< numbers taken as they are, such as metalness
+};
+
+/// Reads an image through OpenImageIO. Throws InputError with the file's name and one reason if it is missing, broken, of
+/// zero size, or larger than 2^28 texels.
+std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content);
+/// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages.
+std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
+                                           TextureContent content);
+
+} // namespace lambert
