@@ -50,8 +50,7 @@ int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t
         chosen = resolution;
         if (3.0 * resolution * resolution * count > kMostRays) continue;
         const double bytes =
-            count * (static_cast<double>(sizeof(FormFactorRow)) +
-                     static_cast<double>(sizeof(FormFactor)) * pilotEntriesPerRow(mesh, rays, resolution));
+            count * bytesPerFactor(MatrixStorage::Float) * pilotEntriesPerRow(mesh, rays, resolution);
         if (bytes <= static_cast<double>(memoryLimit)) break;
     }
     return chosen;
@@ -62,7 +61,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
-        const double back = matrix.rows[patch].back;
+        const double back = matrix.back(patch);
         return back < kInside ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
@@ -97,7 +96,7 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     double receivingArea = 0.0;
     double backArea = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const FormFactorRow& row = matrix.rows[i];
+        const FormFactorRow row = matrix.row(i);
         quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
         if (row.back >= kInside) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
@@ -144,7 +143,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.resolution =
         options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options.memoryLimit);
     const Hemicube hemicube(result.mesh, *result.rays, {result.resolution, options.randomRotation, options.seed});
-    const FormFactorMatrix matrix = computeMatrix(hemicube, progress);
+    const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Float, progress);
     result.rayCount = hemicube.raysPerRow() * result.mesh.size();
     result.rows = assessRows(result.mesh, *result.rays, matrix);
     result.seconds.formFactors = watch.lap();

@@ -44,6 +44,6 @@ public:
 };
 
 /// All rows, computed in parallel. Throws Cancelled.
-FormFactorMatrix computeMatrix(const FormFactorMethod& method, Progress& progress);
+FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress);
 
 } // namespace lambert
