@@ -7,6 +7,13 @@
 
 namespace lambert {
 
+void RowAccumulator::scale(double factor) {
+    if (factor == 1.0) return;
+    for (std::size_t i = 0; i < touched_.size(); ++i)
+        for (std::uint64_t word = touched_[i]; word != 0; word &= word - 1)
+            sums_[64 * i + static_cast<std::size_t>(std::countr_zero(word))] *= factor;
+}
+
 void RowAccumulator::take(FormFactorRow& row) {
     const auto drain = [this](std::uint32_t target) { return std::exchange(sums_[target], 0.0); };
     row.back = drain(back());
@@ -14,7 +21,7 @@ void RowAccumulator::take(FormFactorRow& row) {
     std::size_t count = 0;
     for (const std::uint64_t word : touched_) count += static_cast<std::size_t>(std::popcount(word));
     row.entries.clear();
-    row.lines = 0;
+    row.lines = std::exchange(lines_, 0);
     row.entries.reserve(count);
     for (std::size_t i = 0; i < touched_.size(); ++i) {
         for (std::uint64_t word = std::exchange(touched_[i], 0); word != 0; word &= word - 1) {
