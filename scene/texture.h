@@ -34,6 +34,9 @@ private:
     std::vector<glm::vec4> floats_; //!< one of the two is empty
 };
 
+/// The linear value of an sRGB one, both 0 to 1.
+double srgbDecoded(double value);
+
 /// How the numbers of an image become a texture.
 enum class TextureContent {
     Colour,    //!< 8-bit images are sRGB; opacity is the alpha channel, 1 without one
