@@ -1,6 +1,4 @@
-#include "gltf_square.h"
-#include "reader_checks.h"
-#include "temporary_folder.h"
+#include "gltf_test.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -11,24 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-class GltfReader : public testing::Test {
-protected:
-    ReadResult read(const Square& square) {
-        return readScene(folder.write("scene.glb", glb(square.document, square.binary)));
-    }
-    void expectError(const Square& square, const std::string& part) {
-        SCOPED_TRACE(part);
-        expectInputError(folder.write("scene.glb", glb(square.document, square.binary)), part);
-    }
-    /// Expects the error that the square gives after `change` was merged into it at `pointer`.
-    void expectErrorAt(const std::string& pointer, const std::string& value, const std::string& part) {
-        Square square;
-        square[pointer] = json::parse(value);
-        expectError(square, part);
-    }
-
-    TemporaryFolder folder;
-};
+using GltfReader = GltfTest;
 
 TEST_F(GltfReader, ReadsGlbDataUriAndExternalBufferAlike) {
     Square square;
