@@ -6,6 +6,8 @@ find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 find_package(TinyGLTF CONFIG REQUIRED)
+find_package(draco CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
 find_package(tinyobjloader CONFIG REQUIRED)
 find_package(OpenImageIO CONFIG REQUIRED)
 # Debian's OpenImageIO target also names /usr/include/opencv4, which none of its packages brings.

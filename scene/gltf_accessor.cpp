@@ -1,22 +1,18 @@
 #include "scene/gltf_accessor.h"
 
-#include "core/error.h"
+#include "scene/gltf_buffers.h"
 #include "scene/gltf_document.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
 namespace lambert {
 
 namespace {
-
-struct Element {
-    std::size_t components;
-    std::size_t componentSize;
-};
 
 std::string typeName(const tinygltf::Accessor& accessor) {
     static constexpr std::array<const char*, 7> kComponents = {"BYTE", "UNSIGNED_BYTE", "SHORT", "UNSIGNED_SHORT",
@@ -27,85 +23,194 @@ std::string typeName(const tinygltf::Accessor& accessor) {
     if (accessor.type == TINYGLTF_TYPE_VEC2) shape = "VEC2";
     if (accessor.type == TINYGLTF_TYPE_VEC3) shape = "VEC3";
     if (accessor.type == TINYGLTF_TYPE_VEC4) shape = "VEC4";
-    return fmt::format("{} {}",
+    return fmt::format("{}{} {}", accessor.normalized ? "normalised " : "",
                        component < kComponents.size() ? kComponents[component] : std::to_string(accessor.componentType),
                        shape);
 }
 
-Element elementOf(const std::string& file, const std::string& place, const tinygltf::Accessor& accessor,
-                  GltfAccessor::Use use) {
-    if (use == GltfAccessor::Use::Positions) {
-        if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.type != TINYGLTF_TYPE_VEC3)
-            failAtMember(file, place, typeName(accessor), "FLOAT VEC3 for positions");
-        return {3, 4};
+const char* allowedTypes(GltfAccessor::Use use) {
+    switch (use) {
+    case GltfAccessor::Use::Indices:
+        return "UNSIGNED_BYTE, _SHORT or _INT SCALAR for indices";
+    case GltfAccessor::Use::Vectors:
+        return "FLOAT VEC3, or BYTE or SHORT, signed or not";
+    case GltfAccessor::Use::TextureCoordinates:
+        return "FLOAT VEC2, or BYTE or SHORT, signed or not, for texture coordinates";
+    case GltfAccessor::Use::Colours:
+        return "FLOAT or normalised UNSIGNED_BYTE or _SHORT VEC3 or VEC4 for colours";
+    case GltfAccessor::Use::Rotations:
+        return "FLOAT or normalised BYTE or SHORT VEC4 for rotations";
     }
-    if (accessor.type == TINYGLTF_TYPE_SCALAR) {
-        if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return {1, 1};
-        if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return {1, 2};
-        if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return {1, 4};
-    }
-    failAtMember(file, place, typeName(accessor), "UNSIGNED_BYTE, _SHORT or _INT SCALAR for indices");
+    return "";
 }
 
-template <typename List>
-const typename List::value_type& at(const std::string& file, const List& list, const char* name, int index,
-                                    const std::string& referrer) {
-    if (index < 0 || static_cast<std::size_t>(index) >= list.size())
-        failAtMember(file, referrer, std::to_string(index),
-                     list.empty() ? fmt::format("none: the file has no {}", name)
-                                  : fmt::format("0 to {} ({})", list.size() - 1, name));
-    return list[static_cast<std::size_t>(index)];
+bool isAllowed(const tinygltf::Accessor& accessor, GltfAccessor::Use use) {
+    const int component = accessor.componentType;
+    const bool isFloat = component == TINYGLTF_COMPONENT_TYPE_FLOAT;
+    const bool isSigned = component == TINYGLTF_COMPONENT_TYPE_BYTE || component == TINYGLTF_COMPONENT_TYPE_SHORT;
+    const bool isUnsigned =
+        component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+    switch (use) {
+    case GltfAccessor::Use::Indices:
+        return accessor.type == TINYGLTF_TYPE_SCALAR &&
+               (isUnsigned || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    case GltfAccessor::Use::Vectors:
+        return accessor.type == TINYGLTF_TYPE_VEC3 && (isFloat || isSigned || isUnsigned);
+    case GltfAccessor::Use::TextureCoordinates:
+        return accessor.type == TINYGLTF_TYPE_VEC2 && (isFloat || isSigned || isUnsigned);
+    case GltfAccessor::Use::Colours:
+        return (accessor.type == TINYGLTF_TYPE_VEC3 || accessor.type == TINYGLTF_TYPE_VEC4) &&
+               (isFloat || (isUnsigned && accessor.normalized));
+    case GltfAccessor::Use::Rotations:
+        return accessor.type == TINYGLTF_TYPE_VEC4 && (isFloat || (isSigned && accessor.normalized));
+    }
+    return false;
+}
+
+std::size_t sizeOfComponent(int type) {
+    return static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
+}
+
+/// The elements that fit into `bytes` from `offset` on.
+std::size_t fittingElements(std::size_t bytes, std::size_t offset, std::size_t size, std::size_t stride) {
+    if (offset > bytes || size > bytes - offset) return 0;
+    return (bytes - offset - size) / stride + 1;
+}
+
+template <typename T>
+float component(const unsigned char* bytes, bool normalised) {
+    T value{};
+    std::memcpy(&value, bytes, sizeof value);
+    if (!normalised) return static_cast<float>(value);
+    // -128 stands for -1 as well.
+    return std::max(static_cast<float>(value) / static_cast<float>(std::numeric_limits<T>::max()), -1.0F);
+}
+
+/// A little-endian number of `size` bytes.
+std::uint32_t unsignedNumber(const unsigned char* bytes, std::size_t size) {
+    std::uint32_t value = 0; // the low bytes are the first
+    std::memcpy(&value, bytes, size);
+    return value;
 }
 
 } // namespace
 
 GltfAccessor::GltfAccessor(const std::string& file, const tinygltf::Model& model, int index, Use use,
                            const std::string& referrer) {
-    const auto& accessor = at(file, model.accessors, "accessors", index, referrer);
+    const auto& accessor = gltfElement(file, model.accessors, "accessors", index, referrer);
     const std::string place = fmt::format("/accessors/{}", index);
-    if (accessor.sparse.isSparse)
-        failAtMember(file, place + "/sparse", "a sparse accessor", "only accessors without \"sparse\"");
-    const Element element = elementOf(file, place, accessor, use);
-    const std::size_t elementSize = element.components * element.componentSize;
-    if (accessor.bufferView < 0) failAtMember(file, place + "/bufferView", "nothing", "a buffer view");
-
-    const auto& view = at(file, model.bufferViews, "bufferViews", accessor.bufferView, place + "/bufferView");
-    const std::string viewPlace = fmt::format("/bufferViews/{}", accessor.bufferView);
-    const auto& buffer = at(file, model.buffers, "buffers", view.buffer, viewPlace + "/buffer");
-    if (view.byteOffset > buffer.data.size())
-        failAtMember(file, viewPlace + "/byteOffset", std::to_string(view.byteOffset),
-                     fmt::format("at most {} (buffer {} has so many bytes)", buffer.data.size(), view.buffer));
-    if (view.byteLength > buffer.data.size() - view.byteOffset)
-        failAtMember(file, viewPlace + "/byteLength", std::to_string(view.byteLength),
-                     fmt::format("at most {} (buffer {} has {} bytes)", buffer.data.size() - view.byteOffset,
-                                 view.buffer, buffer.data.size()));
-    stride_ = view.byteStride == 0 ? elementSize : view.byteStride;
-    if (stride_ < elementSize)
-        failAtMember(file, viewPlace + "/byteStride", std::to_string(stride_),
-                     fmt::format("at least {} ({})", elementSize, typeName(accessor)));
-
-    std::size_t fitting = 0;
-    if (accessor.byteOffset <= view.byteLength && elementSize <= view.byteLength - accessor.byteOffset)
-        fitting = (view.byteLength - accessor.byteOffset - elementSize) / stride_ + 1;
-    if (accessor.count > fitting)
-        failAtMember(
-            file, place + "/count", std::to_string(accessor.count),
-            fmt::format("at most {} (bufferView {} has {} bytes)", fitting, accessor.bufferView, view.byteLength));
+    if (!isAllowed(accessor, use)) failAtMember(file, place, typeName(accessor), allowedTypes(use));
+    components_ = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+    componentSize_ = sizeOfComponent(accessor.componentType);
+    componentType_ = accessor.componentType;
+    normalised_ = accessor.normalized;
     count_ = accessor.count;
-    componentSize_ = element.componentSize;
-    if (count_ > 0) data_ = buffer.data.data() + view.byteOffset + accessor.byteOffset;
+    setBase(file, model, accessor, place);
+    if (accessor.sparse.isSparse) setSparse(file, model, accessor, place + "/sparse");
 }
 
-glm::vec3 GltfAccessor::position(std::size_t k) const {
-    std::array<float, 3> xyz;
-    std::memcpy(xyz.data(), data_ + k * stride_, sizeof xyz);
-    return {xyz[0], xyz[1], xyz[2]};
+void GltfAccessor::setBase(const std::string& file, const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                           const std::string& place) {
+    if (accessor.bufferView < 0) {
+        std::size_t bytes = 0;
+        for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
+        if (count_ > bytes)
+            failAtMember(file, place + "/count", std::to_string(count_),
+                         fmt::format("at most {} without a buffer view, the bytes of all buffers", bytes));
+        return;
+    }
+    const auto view = gltfViewBytes(file, model, accessor.bufferView, place + "/bufferView");
+    stride_ = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
+    if (stride_ == 0) stride_ = elementSize();
+    if (stride_ < elementSize())
+        failAtMember(file, fmt::format("/bufferViews/{}/byteStride", accessor.bufferView), std::to_string(stride_),
+                     fmt::format("at least {} ({})", elementSize(), typeName(accessor)));
+    const std::size_t fitting = fittingElements(view.size(), accessor.byteOffset, elementSize(), stride_);
+    if (count_ > fitting)
+        failAtMember(file, place + "/count", std::to_string(count_),
+                     fmt::format("at most {} (bufferView {} has {} bytes)", fitting, accessor.bufferView, view.size()));
+    if (count_ > 0) base_ = view.data() + accessor.byteOffset;
+}
+
+void GltfAccessor::setSparse(const std::string& file, const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                             const std::string& place) {
+    const auto& sparse = accessor.sparse;
+    if (sparse.indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+        sparse.indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        sparse.indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+        failAtMember(file, place + "/indices/componentType", std::to_string(sparse.indices.componentType),
+                     "5121, 5123 or 5125");
+    sparseIndexSize_ = sizeOfComponent(sparse.indices.componentType);
+    const auto part = [&](const auto& list, const char* name, std::size_t size) {
+        const std::string below = fmt::format("{}/{}", place, name);
+        const auto view = gltfViewBytes(file, model, list.bufferView, below + "/bufferView");
+        const auto offset = static_cast<std::size_t>(list.byteOffset);
+        const std::size_t fitting = fittingElements(view.size(), offset, size, size);
+        if (static_cast<std::size_t>(sparse.count) > fitting)
+            failAtMember(
+                file, place + "/count", std::to_string(sparse.count),
+                fmt::format("at most {} {} (bufferView {} has {} bytes)", fitting, name, list.bufferView, view.size()));
+        return view.data() + offset;
+    };
+    sparseIndices_ = part(sparse.indices, "indices", sparseIndexSize_);
+    sparseValues_ = part(sparse.values, "values", elementSize());
+    sparseCount_ = static_cast<std::size_t>(sparse.count);
+
+    for (std::size_t k = 0; k < sparseCount_; ++k) {
+        const std::uint32_t index = sparseIndex(k);
+        if (index >= count_ || (k > 0 && index <= sparseIndex(k - 1)))
+            failAtMember(file, place + "/indices", fmt::format("index {} as element {}", index, k),
+                         fmt::format("ascending indices below {} (the number of elements)", count_));
+    }
+}
+
+std::uint32_t GltfAccessor::sparseIndex(std::size_t k) const {
+    return unsignedNumber(sparseIndices_ + k * sparseIndexSize_, sparseIndexSize_);
+}
+
+const unsigned char* GltfAccessor::bytes(std::size_t k) const {
+    std::size_t first = 0; // the sparse element at or behind k
+    for (std::size_t end = sparseCount_; first < end;) {
+        const std::size_t middle = first + (end - first) / 2;
+        if (sparseIndex(middle) < k) {
+            first = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
+    if (first < sparseCount_ && sparseIndex(first) == k) return sparseValues_ + first * elementSize();
+    return base_ == nullptr ? nullptr : base_ + k * stride_;
+}
+
+glm::vec4 GltfAccessor::element(std::size_t k) const {
+    glm::vec4 result(0.0F);
+    const unsigned char* source = bytes(k);
+    if (source == nullptr) return result;
+    for (std::size_t c = 0; c < components_; ++c, source += componentSize_) {
+        float& value = result[static_cast<int>(c)];
+        switch (componentType_) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            value = component<std::int8_t>(source, normalised_);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            value = component<std::uint8_t>(source, normalised_);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            value = component<std::int16_t>(source, normalised_);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            value = component<std::uint16_t>(source, normalised_);
+            break;
+        default:
+            value = component<float>(source, false);
+        }
+    }
+    return result;
 }
 
 std::uint32_t GltfAccessor::index(std::size_t k) const {
-    std::uint32_t value = 0; // little-endian: the low bytes are the first
-    std::memcpy(&value, data_ + k * stride_, componentSize_);
-    return value;
+    const unsigned char* source = bytes(k);
+    return source == nullptr ? 0 : unsignedNumber(source, componentSize_);
 }
 
 } // namespace lambert

@@ -1,22 +1,58 @@
 #pragma once
 
+#include "scene/scene_reader.h"
+
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace tinygltf {
 class Model;
-}
+class Value;
+} // namespace tinygltf
 
 namespace lambert {
 
-/// Reads a .gltf or .glb file with its buffers into tinygltf's structures. What tinygltf does not check is
-/// checked before it sees the file: container, nesting, the type of every member that the reader uses
-/// (checkGltfMembers), buffer sizes. Images, animations, skins, extensions of the whole file and `extras` are
-/// left out. Throws InputError with the file and, for the JSON part, the path of the member.
-tinygltf::Model loadGltfModel(const std::filesystem::path& path);
+/// Reads a .gltf or .glb file with its buffers into tinygltf's structures. What tinygltf does not check is checked before
+/// it sees the file: container, nesting, the type of every member that the reader uses (checkGltfMembers); and it opens
+/// no files. Images are named but not read. Animations, skins, unknown extensions of the whole file and `extras` are left
+/// out. Throws InputError with the file and, for the JSON part, the path of the member.
+tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options);
+
+/// The folder that the files named in a scene are relative to.
+std::filesystem::path gltfFolder(const std::filesystem::path& path);
 
 /// Throws the InputError "FILE: PATH: found ..., allowed ...".
 [[noreturn]] void failAtMember(const std::string& file, const std::string& member, const std::string& found,
                                const std::string& allowed);
+
+/// `number` in single precision; `member` is its JSON path. Throws InputError if it is below 0 or above `largest`.
+float checkedGltfNumber(const std::string& file, const std::string& member, double number,
+                        double largest = std::numeric_limits<float>::max());
+
+/// The element of a list of the document; `name` is the list's, `referrer` the JSON path of the member that holds
+/// `index`. Throws InputError if there is none.
+template <typename List>
+auto& gltfElement(const std::string& file, List& list, const char* name, int index, const std::string& referrer) {
+    if (index < 0 || static_cast<std::size_t>(index) >= list.size())
+        failAtMember(file, referrer, std::to_string(index),
+                     list.empty() ? fmt::format("none: the file has no {}", name)
+                                  : fmt::format("0 to {} ({})", list.size() - 1, name));
+    return list[static_cast<std::size_t>(index)];
+}
+
+/// An extension of an element, or null.
+template <typename Element>
+const tinygltf::Value* gltfExtension(const Element& element, const char* name) {
+    const auto found = element.extensions.find(name);
+    return found == element.extensions.end() ? nullptr : &found->second;
+}
+
+/// A number of an extension whose type was checked, or `missing`.
+double gltfNumber(const tinygltf::Value& extension, const char* member, double missing);
+/// A whole number of an extension, or `missing`; what is beyond 2^53 becomes that.
+std::size_t gltfSize(const tinygltf::Value& extension, const char* member, std::size_t missing = 0);
 
 } // namespace lambert

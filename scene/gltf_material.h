@@ -1,17 +1,23 @@
 #pragma once
 
-#include "scene/scene_builder.h"
+#include "scene/gltf_texture.h"
 
-namespace tinygltf {
-class Model;
-}
+#include <optional>
+#include <vector>
 
 namespace lambert {
 
-/// Adds all materials of the model to the builder, in its order, with warnings for what Lambert leaves out,
-/// and returns their indices: #materials of the model. Throws InputError with the JSON path if a number is
-/// negative or not finite.
-std::vector<std::uint32_t> addGltfMaterials(const std::string& file, const tinygltf::Model& model,
-                                            SceneBuilder& builder);
+/// A material of the model, in the scene.
+struct GltfMaterial {
+    std::uint32_t index = 0;                                  //!< into Scene::materials
+    std::optional<GltfTextureCoordinates> uv{}, emissionUv{}; //!< where its textures lie, if it has them
+    bool isInvisible = false;                                 //!< alphaMode MASK leaves nothing of it
+};
+
+/// Adds all materials of the model to the builder, in its order, with warnings for what Lambert leaves out, and returns
+/// what the meshes need of them: #materials of the model. Images are named relative to `folder`. Throws InputError with
+/// the JSON path if a number is negative or not finite, or an index out of range.
+std::vector<GltfMaterial> addGltfMaterials(const std::string& file, const std::filesystem::path& folder,
+                                           const tinygltf::Model& model, SceneBuilder& builder);
 
 } // namespace lambert

@@ -132,29 +132,46 @@ void SceneBuilder::warnUnlessStrict(const std::string& text) {
 }
 
 template <typename Read>
-std::uint32_t SceneBuilder::addTextureOnce(const std::string& key, const std::string& name,
-                                           const std::string& replacement, Read&& read) {
+std::uint32_t SceneBuilder::addTextureOnce(const std::string& key, Read&& read) {
     const auto [entry, isNew] = textures_.try_emplace(key, kNone);
     if (!isNew) return entry->second;
-    try {
-        entry->second = addTexture(read());
-    } catch (const InputError& error) {
-        warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
-    }
+    if (auto texture = read()) entry->second = addTexture(std::move(texture));
     return entry->second;
 }
 
 std::uint32_t SceneBuilder::addTextureFile(const std::filesystem::path& folder, const std::string& name,
                                            TextureContent content, const std::string& replacement) {
-    const std::string key = fmt::format("{} {}", static_cast<int>(content), (folder / name).string());
-    return addTextureOnce(key, name, replacement,
-                          [&] { return readTexture(namedFile(folder, name, options_), content); });
+    return addTextureOnce(fmt::format("{} {}", static_cast<int>(content), (folder / name).string()),
+                          [&] { return readTextureFile(folder, name, content, replacement); });
 }
 
 std::uint32_t SceneBuilder::addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                             TextureContent content, const std::string& replacement) {
-    const std::string key = fmt::format("{} {}", static_cast<int>(content), name);
-    return addTextureOnce(key, name, replacement, [&] { return readTexture(bytes, name, content); });
+    return addTextureOnce(fmt::format("{} {}", static_cast<int>(content), name),
+                          [&] { return readTextureBytes(bytes, name, content, replacement); });
+}
+
+template <typename Read>
+std::shared_ptr<const Texture> SceneBuilder::textureOrNull(const std::string& name, const std::string& replacement,
+                                                           Read&& read) {
+    try {
+        return read();
+    } catch (const InputError& error) {
+        warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
+        return nullptr;
+    }
+}
+
+std::shared_ptr<const Texture> SceneBuilder::readTextureFile(const std::filesystem::path& folder,
+                                                             const std::string& name, TextureContent content,
+                                                             const std::string& replacement) {
+    return textureOrNull(name, replacement, [&] { return readTexture(namedFile(folder, name, options_), content); });
+}
+
+std::shared_ptr<const Texture> SceneBuilder::readTextureBytes(std::span<const std::uint8_t> bytes,
+                                                              const std::string& name, TextureContent content,
+                                                              const std::string& replacement) {
+    return textureOrNull(name, replacement, [&] { return readTexture(bytes, name, content); });
 }
 
 std::uint32_t SceneBuilder::addTexture(std::shared_ptr<const Texture> texture) {

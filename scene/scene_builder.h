@@ -46,6 +46,11 @@ public:
     /// The same for an image inside the scene's file.
     std::uint32_t addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name, TextureContent content,
                                   const std::string& replacement);
+    /// The same images without adding them; null where the functions above return kNone.
+    std::shared_ptr<const Texture> readTextureFile(const std::filesystem::path& folder, const std::string& name,
+                                                   TextureContent content, const std::string& replacement);
+    std::shared_ptr<const Texture> readTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name,
+                                                    TextureContent content, const std::string& replacement);
     /// Adds an image that a reader made.
     std::uint32_t addTexture(std::shared_ptr<const Texture> texture);
     /// An image added before.
@@ -81,8 +86,9 @@ private:
 
     std::uint32_t cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
     template <typename Read>
-    std::uint32_t addTextureOnce(const std::string& key, const std::string& name, const std::string& replacement,
-                                 Read&& read);
+    std::uint32_t addTextureOnce(const std::string& key, Read&& read);
+    template <typename Read>
+    std::shared_ptr<const Texture> textureOrNull(const std::string& name, const std::string& replacement, Read&& read);
 
     std::string file_;
     ReadOptions options_;

@@ -139,6 +139,8 @@ std::shared_ptr<const Texture> read(const std::string& file, const std::string& 
 
 } // namespace
 
+double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
+
 Texture::Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba)
     : name_(std::move(name)), width_(width), height_(height), bytes_(std::move(rgba)) {
     assert(bytes_.size() == 4 * texelCount(width, height));
@@ -166,9 +168,11 @@ std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, Te
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
                                            TextureContent content) {
+    const std::string_view start(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const bool jpeg = start.starts_with("\xFF\xD8");
+    if (!jpeg && !start.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
     // The name only has to tell the format.
-    const bool jpeg = bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8;
     return read(jpeg ? "image.jpg" : "image.png", name, content, &memory);
 }
 

@@ -55,6 +55,27 @@ struct Square {
         "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
         "buffers": [{"byteLength": 60}]})");
 
+    /// Appends a buffer view of these bytes and returns its index.
+    int addView(const std::string& bytes) {
+        binary.resize((binary.size() + 3) / 4 * 4, '\0');
+        document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}});
+        binary += bytes;
+        document["buffers"][0]["byteLength"] = binary.size();
+        return static_cast<int>(document["bufferViews"].size() - 1);
+    }
+
+    /// Appends an accessor of `count` elements, packed one after the other, and returns its index.
+    int addAccessor(const std::string& bytes, int componentType, const std::string& type, std::size_t count,
+                    bool normalised = false) {
+        const int view = addView(bytes);
+        document["accessors"].push_back({{"bufferView", view},
+                                         {"componentType", componentType},
+                                         {"type", type},
+                                         {"count", count},
+                                         {"normalized", normalised}});
+        return static_cast<int>(document["accessors"].size() - 1);
+    }
+
     nlohmann::json& operator[](const std::string& pointer) { return document[nlohmann::json::json_pointer(pointer)]; }
 };
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace lambert {
+
+/// Replaces every buffer view compressed by EXT_meshopt_compression (or KHR_meshopt_compression, as far as that is the
+/// same) with one of the decompressed data. Throws InputError with `file` and the JSON path if the data are broken.
+void decompressMeshopt(const std::string& file, tinygltf::Model& model);
+
+} // namespace lambert
