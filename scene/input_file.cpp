@@ -21,12 +21,6 @@ std::string_view shortened(std::string_view text, std::size_t length) {
     return text.substr(0, length);
 }
 
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
-}
-
 /// The entry of `folder` that has this name but for the case of its letters, or the name itself.
 std::filesystem::path matchCase(const std::filesystem::path& folder, const std::filesystem::path& name) {
     std::error_code error;
@@ -83,6 +77,13 @@ std::filesystem::path namedFile(const std::filesystem::path& folder, const std::
         throw InputError(fmt::format("{} lies outside the scene's folder; --allow-outside-files reads it all the same",
                                      inQuotes(name)));
     return path;
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
 }
 
 std::string inQuotes(std::string_view text) {

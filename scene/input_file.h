@@ -18,6 +18,9 @@ struct ReadOptions;
 std::filesystem::path namedFile(const std::filesystem::path& folder, const std::string& name,
                                 const ReadOptions& options);
 
+/// With the letters A to Z made small.
+std::string lowerCase(std::string_view text);
+
 /// `text` in double quotes for a message of one line: at most 60 characters, control characters made
 /// harmless.
 std::string inQuotes(std::string_view text);

@@ -7,7 +7,6 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -136,9 +135,6 @@ void addPolygons(SceneBuilder& builder, const TinyObj& source, const ObjText& ch
 } // namespace
 
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
-    if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
-                                     options.metresPerUnit));
     const std::string file = path.string();
     ObjText checked = checkObj(file, readInputFile(path));
 

@@ -18,9 +18,8 @@ namespace lambert {
 
 namespace {
 
-constexpr float kMaxReflectance = 0.99F; // above it the number of bounces grows without bound
-constexpr double kMaxOffPlane = 1e-5;    // of a quad's longest diagonal
-constexpr double kMinCornerSine = 1e-5;  // flatter corners would leave a quad's half without area
+constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
+constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 

@@ -11,6 +11,9 @@
 
 namespace lambert {
 
+/// The largest reflectance of a material: above it the number of bounces grows without bound.
+inline constexpr float kMaxReflectance = 0.99F;
+
 /// What all readers share: takes what a file says and makes a Scene of triangles and convex planar quads of
 /// it, counting and naming what has to be dropped or changed on the way.
 class SceneBuilder {

@@ -15,12 +15,12 @@
 
 namespace lambert {
 
+double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
+
 namespace {
 
 /// A plain square of 16,384 texels.
 constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
-
-double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
 
 const std::array<float, 256>& srgbTable() {
     static const std::array<float, 256> table = [] {
