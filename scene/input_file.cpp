@@ -22,12 +22,6 @@ std::string_view shortened(std::string_view text, std::size_t length) {
     return text.substr(0, length);
 }
 
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
-}
-
 /// The entry of `folder` that has this name but for the case of its letters, or the name itself.
 std::filesystem::path matchCase(const std::filesystem::path& folder, const std::filesystem::path& name) {
     std::error_code error;
@@ -100,6 +94,13 @@ std::string asUtf8(std::string_view text) {
     if (valid) return std::string(text);
     std::string result;
     for (const char byte : text) Utf8::encode(static_cast<unsigned char>(byte), std::back_inserter(result));
+    return result;
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return result;
 }
 

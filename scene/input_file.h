@@ -25,6 +25,9 @@ std::filesystem::path namedFile(const std::filesystem::path& folder, const std::
 /// `text` as it stands if it is UTF-8; if not, its bytes are taken as Latin-1.
 std::string asUtf8(std::string_view text);
 
+/// With the letters A to Z made small.
+std::string lowerCase(std::string_view text);
+
 /// `text` in double quotes for a message of one line: at most 60 characters, control characters made
 /// harmless.
 std::string inQuotes(std::string_view text);

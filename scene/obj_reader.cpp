@@ -203,9 +203,6 @@ void warnOfIgnored(const ObjVertices& file, SceneBuilder& builder) {
 } // namespace
 
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
-    if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
-                                     options.metresPerUnit));
     ReadProgress progress(options.progress, path);
     SceneBuilder builder(path.string(), options);
 

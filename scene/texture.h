@@ -13,6 +13,9 @@
 
 namespace lambert {
 
+/// The linear value of an sRGB-encoded one; both 0 to 1.
+double srgbDecoded(double value);
+
 /// An image on a surface: texels are constant squares, row 0 is at the top. Immutable.
 class Texture {
 public:
