@@ -4,6 +4,7 @@
 #include "meshing/contacts.h"
 #include "meshing/edge_division.h"
 #include "meshing/face_mesher.h"
+#include "meshing/patch_surface.h"
 #include "meshing/prepare.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,11 @@
 #include <numeric>
 
 namespace lambert {
+
+std::size_t defaultPatches(const Scene& scene) {
+    const std::size_t polygons = scene.polygons.size();
+    return polygons + std::max<std::size_t>(5000, polygons / 4);
+}
 
 namespace {
 
@@ -209,19 +215,10 @@ double totalArea(const Scene& scene) {
     });
 }
 
-} // namespace
-
-std::size_t defaultPatches(const Scene& scene) {
-    const std::size_t polygons = scene.polygons.size();
-    return polygons + std::max<std::size_t>(5000, polygons / 4);
-}
-
-PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
+/// The patches, with the material's constants for what is on them.
+PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport& counts) {
     if (options.patchLength && !(*options.patchLength > 0.0))
         throw UsageError(fmt::format("patch length: found {}, allowed is a length above 0", *options.patchLength));
-    MeshReport ownReport;
-    MeshReport& counts = report != nullptr ? *report : ownReport;
-    counts = MeshReport{};
     if (!options.patchLength && options.patches == std::size_t{0}) return keepPolygons(scene, counts);
 
     const VertexIndex index(scene.positions);
@@ -254,6 +251,16 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
         length *= std::sqrt(std::max(found - base, 1.0) / (wanted - base));
         mesh = divide(scene, index, contacts, length, progress, counts);
     }
+    return mesh;
+}
+
+} // namespace
+
+PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
+    MeshReport counts;
+    PatchMesh mesh = divideAsWanted(scene, options, progress, counts);
+    averageSurfaces(scene, mesh);
+    if (report != nullptr) *report = counts;
     return mesh;
 }
 

@@ -20,9 +20,10 @@ struct PatchMesh {
 
     std::vector<glm::vec3> centroid;     //!< #patches, metres
     std::vector<glm::vec3> normal;       //!< #patches, unit length, to the patch's side
-    std::vector<float> area;             //!< #patches, m²
-    std::vector<Rgb> reflectance;        //!< #patches
-    std::vector<Rgb> emittedRadiosity;   //!< #patches, B_e = π L_e
+    std::vector<float> area;             //!< #patches, m², of what is not a hole; see averageSurfaces
+    std::vector<Rgb> reflectance;        //!< #patches, mean over that area, 0 to 0.99
+    std::vector<Rgb> emittedRadiosity;   //!< #patches, mean over that area, B_e = π L_e
+    std::vector<float> opacity;          //!< #patches, share of the patch that is not a hole; empty: no holes at all
     std::vector<std::uint32_t> polygon;  //!< #patches, into Scene::polygons
     std::vector<std::uint32_t> material; //!< #patches, into Scene::materials
     std::size_t frontCount = 0;
