@@ -30,7 +30,7 @@ void requireLight(const Scene& scene) {
 
 /// Entries per row at a resolution, from rows of a few patches spread over the mesh.
 double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int resolution) {
-    const Hemicube method(mesh, rays, {resolution, true, 1});
+    const Hemicube method(mesh, rays, {.resolution = resolution});
     RowAccumulator accumulator(mesh.size());
     FormFactorRow row;
     const std::size_t samples = std::min<std::size_t>(32, mesh.size());
@@ -49,9 +49,7 @@ int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t
     for (int resolution = 128; resolution >= 16; resolution -= 8) {
         chosen = resolution;
         if (3.0 * resolution * resolution * count > kMostRays) continue;
-        const double bytes =
-            count * (static_cast<double>(sizeof(FormFactorRow)) +
-                     static_cast<double>(sizeof(FormFactor)) * pilotEntriesPerRow(mesh, rays, resolution));
+        const double bytes = count * bytesPerFactor(MatrixStorage::Float) * pilotEntriesPerRow(mesh, rays, resolution);
         if (bytes <= static_cast<double>(memoryLimit)) break;
     }
     return chosen;
@@ -62,7 +60,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
-        const double back = matrix.rows[patch].back;
+        const double back = matrix.back(patch);
         return back < kInside ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
@@ -71,13 +69,13 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     std::vector<double> met(scene.materials.size(), 0.0);
     constexpr int kResolution = 16;
     RayPacket packet;
-    const Hemicube hemicube(mesh, rays, {kResolution, false, 0});
+    const Hemicube hemicube(mesh, rays, {.resolution = kResolution, .randomRotation = false});
     for (const std::uint32_t patch : patches) {
         for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], 0.0F, kResolution)) {
             for (int row = 0; row < face.rows; row += 4) {
                 for (int column = 0; column < face.columns; column += 4) {
                     tileDirections(face, column, row, kResolution, packet);
-                    rays.closest(hemicube.origin(patch), packet);
+                    rays.closest(hemicube.viewpoint(patch).origin, packet);
                     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
                         const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
@@ -97,7 +95,7 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     double receivingArea = 0.0;
     double backArea = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const FormFactorRow& row = matrix.rows[i];
+        const FormFactorRow row = matrix.row(i);
         quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
         if (row.back >= kInside) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
@@ -143,8 +141,10 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
 
     result.resolution =
         options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options.memoryLimit);
-    const Hemicube hemicube(result.mesh, *result.rays, {result.resolution, options.randomRotation, options.seed});
-    const FormFactorMatrix matrix = computeMatrix(hemicube, progress);
+    const Hemicube hemicube(
+        result.mesh, *result.rays,
+        {.resolution = result.resolution, .randomRotation = options.randomRotation, .seed = options.seed});
+    const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Float, progress);
     result.rayCount = hemicube.raysPerRow() * result.mesh.size();
     result.rows = assessRows(result.mesh, *result.rays, matrix);
     result.seconds.formFactors = watch.lap();

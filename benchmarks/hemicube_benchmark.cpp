@@ -83,7 +83,7 @@ private:
 
 std::vector<RayPacket> packetsOf(const Hemicube& hemicube, const PatchMesh& mesh, std::uint32_t patch) {
     std::vector<RayPacket> packets;
-    for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], hemicube.angle(patch), kResolution))
+    for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], hemicube.viewpoint(patch).angle, kResolution))
         for (int row = 0; row < face.rows; row += 4)
             for (int column = 0; column < face.columns; column += 4)
                 tileDirections(face, column, row, kResolution, packets.emplace_back());
@@ -111,7 +111,7 @@ void compare(benchmark::State& state, const Scene& input, std::size_t patches) {
             const auto patch = static_cast<std::uint32_t>(k * mesh.size() / kRows);
             const std::vector<RayPacket> packets = packetsOf(hemicube, mesh, patch);
             Stopwatch watch;
-            hits += bare.trace(hemicube.origin(patch), packets);
+            hits += bare.trace(hemicube.viewpoint(patch).origin, packets);
             bareSeconds += watch.lap();
             hemicube.row(patch, accumulator);
             accumulator.take(row);

@@ -105,15 +105,14 @@ double squareToSquare(const std::array<std::array<glm::vec3, 4>, 2>& squares, Pr
     meshOptions.patchLength = 1.0 / 24.0;
     const PatchMesh mesh = buildPatchMesh(scene, meshOptions, progress);
     const Hemicube method(mesh, rays, {.resolution = 256});
-    const FormFactorMatrix matrix = computeMatrix(method, progress);
+    const FormFactorMatrix matrix = computeMatrix(method, MatrixStorage::Double, progress);
     double flux = 0.0;
     double area = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         if (mesh.material[i] != 0) continue;
         const auto a = static_cast<double>(mesh.area[i]);
         area += a;
-        for (const FormFactor& entry : matrix.rows[i].entries)
-            if (mesh.material[entry.patch] == 1) flux += a * static_cast<double>(entry.value);
+        matrix.visit(i, [&](std::uint32_t j, double factor) { flux += mesh.material[j] == 1 ? a * factor : 0.0; });
     }
     return flux / area;
 }

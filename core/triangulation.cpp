@@ -11,16 +11,86 @@ namespace lambert {
 
 namespace {
 
-enum class Side : char { Unknown, Outside, Inside };
+/// How often the border goes around a face, counter-clockwise; and how much that changes from here across each edge.
+struct Winding {
+    int number = 0;
+    bool known = false;
+    std::array<int, 3> change{};
+};
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
-using FaceInfo = CGAL::Triangulation_face_base_with_info_2<Side, Kernel>;
+using FaceInfo = CGAL::Triangulation_face_base_with_info_2<Winding, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfo>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using NoCrossing = CGAL::No_constraint_intersection_requiring_constructions_tag;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, NoCrossing>;
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using Vertex = Triangulation::Vertex_handle;
+using Face = Triangulation::Face_handle;
+
+/// The vertices of `points`, or nothing if two coincide that may not.
+std::optional<std::vector<Vertex>> insertPoints(Triangulation& triangulation, std::span<const glm::dvec2> points,
+                                                std::size_t borderCount) {
+    std::vector<Vertex> vertices(points.size());
+    Face hint;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::size_t before = triangulation.number_of_vertices();
+        vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
+        if (triangulation.number_of_vertices() != before) {
+            vertices[i]->info() = static_cast<std::uint32_t>(i);
+        } else if (i >= borderCount) {
+            return std::nullopt;
+        }
+        hint = vertices[i]->face();
+    }
+    for (std::size_t i = 0; i < borderCount; ++i)
+        if (vertices[i] == vertices[(i + 1) % borderCount]) return std::nullopt;
+    return vertices;
+}
+
+/// The part of the constraint from `from` to `to` that begins at `from`: the face on its left, and the edge there.
+Triangulation::Edge firstPart(const Triangulation& triangulation, Vertex from, Vertex to) {
+    auto face = triangulation.incident_faces(from);
+    while (true) {
+        const int index = face->index(from);
+        const int edge = Triangulation::cw(index); // from `from` to the next corner
+        const Vertex next = face->vertex(Triangulation::ccw(index));
+        const bool along =
+            face->is_constrained(edge) && !triangulation.is_infinite(next) &&
+            (next == to || CGAL::are_strictly_ordered_along_line(from->point(), next->point(), to->point()));
+        if (along) return {face, edge};
+        ++face;
+    }
+}
+
+/// Counts the border edge from `from` to `to`, which may pass through other vertices.
+void countBorderEdge(const Triangulation& triangulation, Vertex from, Vertex to) {
+    while (from != to) {
+        const auto [left, edge] = firstPart(triangulation, from, to);
+        const Face right = left->neighbor(edge);
+        const int mirrored = triangulation.mirror_index(left, edge);
+        --left->info().change[static_cast<std::size_t>(edge)];
+        ++right->info().change[static_cast<std::size_t>(mirrored)];
+        from = left->vertex(Triangulation::cw(edge));
+    }
+}
+
+/// Gives every face its winding number, from outside inwards.
+void spreadWinding(Triangulation& triangulation) {
+    std::vector<Face> stack{triangulation.infinite_face()};
+    stack.back()->info().known = true;
+    while (!stack.empty()) {
+        const Face face = stack.back();
+        stack.pop_back();
+        for (int edge = 0; edge < 3; ++edge) {
+            Winding& next = face->neighbor(edge)->info();
+            if (next.known) continue;
+            next.number = face->info().number + face->info().change[static_cast<std::size_t>(edge)];
+            next.known = true;
+            stack.push_back(face->neighbor(edge));
+        }
+    }
+}
 
 } // namespace
 
@@ -28,52 +98,25 @@ std::optional<std::vector<std::array<std::uint32_t, 3>>>
 triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
                    std::span<const std::array<std::uint32_t, 2>> constraints) {
     Triangulation triangulation;
-    std::vector<Triangulation::Vertex_handle> vertices(points.size());
-    Triangulation::Face_handle hint;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
-        if (triangulation.number_of_vertices() != i + 1) return std::nullopt; // two points coincide
-        vertices[i]->info() = static_cast<std::uint32_t>(i);
-        hint = vertices[i]->face();
-    }
-    if (triangulation.dimension() < 2) return std::nullopt;
+    const auto vertices = insertPoints(triangulation, points, borderCount);
+    if (!vertices || triangulation.dimension() < 2) return std::nullopt;
+    const auto next = [&](std::size_t i) { return (*vertices)[(i + 1) % borderCount]; };
     try {
-        for (std::size_t i = 0; i < borderCount; ++i)
-            triangulation.insert_constraint(vertices[i], vertices[(i + 1) % borderCount]);
-        for (const auto& [a, b] : constraints) triangulation.insert_constraint(vertices[a], vertices[b]);
+        for (std::size_t i = 0; i < borderCount; ++i) triangulation.insert_constraint((*vertices)[i], next(i));
+        for (const auto& [a, b] : constraints) triangulation.insert_constraint((*vertices)[a], (*vertices)[b]);
     } catch (const Triangulation::Intersection_of_constraints_exception&) {
         return std::nullopt;
     }
-
-    // Flood from outside: a face is inside if the walk from the infinite face entered through the border.
-    // Constraints inside do not count: only edges between consecutive border points, or parts of them, do.
-    const auto isBorder = [&](const Triangulation::Face_handle& face, int edge) {
-        if (!face->is_constrained(edge)) return false;
-        const auto a = face->vertex(Triangulation::cw(edge))->info();
-        const auto b = face->vertex(Triangulation::ccw(edge))->info();
-        if (a >= borderCount || b >= borderCount) return false;
-        const std::size_t gap = a > b ? a - b : b - a;
-        return gap == 1 || gap == borderCount - 1;
-    };
-    for (const auto& face : triangulation.all_face_handles()) face->info() = Side::Unknown;
-    std::vector<Triangulation::Face_handle> stack{triangulation.infinite_face()};
-    stack.back()->info() = Side::Outside;
-    while (!stack.empty()) {
-        const auto face = stack.back();
-        stack.pop_back();
-        for (int edge = 0; edge < 3; ++edge) {
-            const auto next = face->neighbor(edge);
-            if (next->info() != Side::Unknown) continue;
-            const bool crossed = isBorder(face, edge);
-            next->info() = (face->info() == Side::Inside) != crossed ? Side::Inside : Side::Outside;
-            stack.push_back(next);
-        }
-    }
+    for (const Face face : triangulation.all_face_handles()) face->info() = {};
+    for (std::size_t i = 0; i < borderCount; ++i) countBorderEdge(triangulation, (*vertices)[i], next(i));
+    spreadWinding(triangulation);
 
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (const auto& face : triangulation.finite_face_handles()) {
-        if (face->info() != Side::Inside) continue;
-        triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    for (const Face face : triangulation.finite_face_handles()) {
+        const int winding = face->info().number;
+        if (winding != 0 && winding != 1) return std::nullopt;
+        if (winding == 1)
+            triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
     }
     return triangles;
 }

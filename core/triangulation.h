@@ -10,14 +10,16 @@
 
 namespace lambert {
 
-/// Constrained Delaunay triangulation of a simple polygon.
+/// Constrained Delaunay triangulation of a polygon that does not cross itself.
 ///
-/// `points[0 .. borderCount)` is the border, in order, counter-clockwise; the points after it lie inside and
-/// become vertices too. `constraints` are pairs of point indices that must appear as edges (chains of edges,
+/// `points[0 .. borderCount)` is the border, in order, counter-clockwise. It may touch itself: an edge that is walked in
+/// both directions, such as the bridge to a hole, is no border, and of points that coincide there the triangles name the
+/// first. The points after the border lie inside and become vertices too. `constraints` are pairs of point indices that must appear as edges (chains of edges,
 /// where they pass through other points). No point is added.
 ///
-/// Returns counter-clockwise triangles of point indices that cover the polygon, or nothing if the border or
-/// the constraints cross themselves or each other, or if two points coincide.
+/// Returns counter-clockwise triangles of point indices that cover the polygon once, or nothing if the border or the
+/// constraints cross themselves or each other, if the border covers something twice or clockwise, or if two points
+/// coincide that are consecutive or not both on the border.
 std::optional<std::vector<std::array<std::uint32_t, 3>>>
 triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
                    std::span<const std::array<std::uint32_t, 2>> constraints = {});

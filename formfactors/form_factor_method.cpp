@@ -7,6 +7,13 @@
 
 namespace lambert {
 
+void RowAccumulator::scale(double factor) {
+    if (factor == 1.0) return;
+    for (std::size_t i = 0; i < touched_.size(); ++i)
+        for (std::uint64_t word = touched_[i]; word != 0; word &= word - 1)
+            sums_[64 * i + static_cast<std::size_t>(std::countr_zero(word))] *= factor;
+}
+
 void RowAccumulator::take(FormFactorRow& row) {
     const auto drain = [this](std::uint32_t target) { return std::exchange(sums_[target], 0.0); };
     row.back = drain(back());
@@ -14,26 +21,28 @@ void RowAccumulator::take(FormFactorRow& row) {
     std::size_t count = 0;
     for (const std::uint64_t word : touched_) count += static_cast<std::size_t>(std::popcount(word));
     row.entries.clear();
+    row.lines = std::exchange(lines_, 0);
     row.entries.reserve(count);
     for (std::size_t i = 0; i < touched_.size(); ++i) {
         for (std::uint64_t word = std::exchange(touched_[i], 0); word != 0; word &= word - 1) {
             const auto patch = static_cast<std::uint32_t>(64 * i + static_cast<std::size_t>(std::countr_zero(word)));
-            if (patch < back()) row.entries.push_back({patch, static_cast<float>(drain(patch))});
+            if (patch < back()) row.entries.push_back({patch, drain(patch)});
         }
     }
 }
 
-FormFactorMatrix computeMatrix(const FormFactorMethod& method, Progress& progress) {
-    FormFactorMatrix matrix;
-    matrix.rows.resize(method.patchCount());
+FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress) {
+    FormFactorMatrix matrix(method.patchCount(), storage);
     std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()),
                                              RowAccumulator(method.patchCount()));
     progress.begin("form factors", method.patchCount());
     parallelFor(method.patchCount(), 8, [&](std::size_t begin, std::size_t end, int worker) {
         RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
+        FormFactorRow row;
         for (std::size_t patch = begin; patch < end; ++patch) {
             method.row(static_cast<std::uint32_t>(patch), accumulator);
-            accumulator.take(matrix.rows[patch]);
+            accumulator.take(row);
+            matrix.setRow(patch, row);
         }
         progress.advance(end - begin);
     });

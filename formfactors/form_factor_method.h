@@ -21,6 +21,10 @@ public:
         sums_[target] += value;
         touched_[target / 64] |= std::uint64_t{1} << (target % 64);
     }
+    /// Says that all sums are whole multiples of 1 / lines; see FormFactorRow::lines.
+    void setLines(std::uint32_t lines) { lines_ = lines; }
+    /// Multiplies all sums.
+    void scale(double factor);
     std::uint32_t back() const { return back_; }    ///< target for what meets a black back face
     std::uint32_t out() const { return back_ + 1; } ///< target for what leaves the scene
 
@@ -31,6 +35,7 @@ private:
     std::uint32_t back_;
     std::vector<double> sums_;           ///< #patches + 2
     std::vector<std::uint64_t> touched_; ///< one bit per target that something was added to
+    std::uint32_t lines_ = 0;
 };
 
 /// A way to compute the form factors from one patch to all others. Thread-safe.
@@ -44,6 +49,6 @@ public:
 };
 
 /// All rows, computed in parallel. Throws Cancelled.
-FormFactorMatrix computeMatrix(const FormFactorMethod& method, Progress& progress);
+FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress);
 
 } // namespace lambert

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "formfactors/form_factor_method.h"
+#include "formfactors/viewpoints.h"
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
 
@@ -11,11 +12,12 @@ namespace lambert {
 
 struct HemicubeOptions {
     int resolution = 128;       //!< pixels along an edge of the top face; even, 16 to 4096
-    bool randomRotation = true; //!< turns each patch's hemicube about its normal by an angle of its own
-    std::uint64_t seed = 1;     //!< of the angles
+    int perPatch = 1;           //!< hemicubes spread over a patch, 1 to 1024; more for patches with near neighbours
+    bool randomRotation = true; //!< turns each hemicube about its normal by an angle of its own
+    std::uint64_t seed = 1;     //!< of the angles and places
 };
 
-/// Form factors from the centre of each patch through the pixels of a half cube, traced as packets of 4 × 4 pixels.
+/// Form factors from the centre of each patch (or several points of it) through the pixels of a half cube, traced as packets of 4 × 4 pixels.
 ///
 /// M. F. Cohen, D. P. Greenberg, "The hemi-cube: a radiosity solution for complex environments", SIGGRAPH 1985.
 class Hemicube : public FormFactorMethod {
@@ -30,9 +32,8 @@ public:
     /// The row of a point instead of a patch: `origin` as is, unit `normal`, hemicube turned by `angle` (radians).
     void pointRow(const glm::vec3& origin, const glm::vec3& normal, float angle, RowAccumulator& accumulator) const;
 
-    /// Where the rays of a patch's row start: above its centre. Shared with whoever traces the same rays.
-    glm::vec3 origin(std::uint32_t patch) const;
-    float angle(std::uint32_t patch) const; ///< radians
+    /// Where the `index`-th hemicube of a patch stands. For whoever traces the same rays.
+    Viewpoint viewpoint(std::uint32_t patch, int index = 0) const;
 
 private:
     const PatchMesh& mesh_;

@@ -3,11 +3,12 @@
 #include "core/error.h"
 #include "scene/scene_reader.h"
 
+#include <boost/locale/utf.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <fstream>
+#include <iterator>
 #include <system_error>
 
 namespace lambert {
@@ -19,12 +20,6 @@ std::string_view shortened(std::string_view text, std::size_t length) {
     if (text.size() <= length) return text;
     while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
     return text.substr(0, length);
-}
-
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
 }
 
 /// The entry of `folder` that has this name but for the case of its letters, or the name itself.
@@ -46,7 +41,7 @@ bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7
 
 } // namespace
 
-std::string readInputFile(const std::filesystem::path& path) {
+std::ifstream openInputFile(const std::filesystem::path& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) {
@@ -59,11 +54,16 @@ std::string readInputFile(const std::filesystem::path& path) {
 
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
+    if (std::filesystem::file_size(path) == 0) throw InputError(path.string() + ": the file is empty");
+    return stream;
+}
+
+std::string readInputFile(const std::filesystem::path& path) {
+    std::ifstream stream = openInputFile(path);
     std::string content(std::filesystem::file_size(path), '\0');
     stream.read(content.data(), static_cast<std::streamsize>(content.size()));
     if (stream.bad() || static_cast<std::size_t>(stream.gcount()) != content.size())
         throw InputError(path.string() + ": cannot be read to its end");
-    if (content.empty()) throw InputError(path.string() + ": the file is empty");
     return content;
 }
 
@@ -72,17 +72,36 @@ std::filesystem::path namedFile(const std::filesystem::path& folder, const std::
     std::string forward = name;
     std::error_code error;
     if (!std::filesystem::exists(folder / name, error)) std::replace(forward.begin(), forward.end(), '\\', '/');
-    std::filesystem::path path = folder;
+    const std::filesystem::path start = folder.empty() ? std::filesystem::path(".") : folder;
+    std::filesystem::path path = start;
     for (const std::filesystem::path& part : std::filesystem::path(forward)) path /= matchCase(path, part);
     if (options.allowOutsideFiles) return path;
 
-    const auto home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error);
+    const auto home = std::filesystem::weakly_canonical(std::filesystem::absolute(start), error);
     const auto target = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
     const auto [inHome, inTarget] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
     if (error || inHome != home.end())
         throw InputError(fmt::format("{} lies outside the scene's folder; --allow-outside-files reads it all the same",
                                      inQuotes(name)));
     return path;
+}
+
+std::string asUtf8(std::string_view text) {
+    using Utf8 = boost::locale::utf::utf_traits<char>;
+    bool valid = true;
+    for (auto next = text.begin(); valid && next != text.end();)
+        valid = boost::locale::utf::is_valid_codepoint(Utf8::decode(next, text.end()));
+    if (valid) return std::string(text);
+    std::string result;
+    for (const char byte : text) Utf8::encode(static_cast<unsigned char>(byte), std::back_inserter(result));
+    return result;
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
 }
 
 std::string inQuotes(std::string_view text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,9 @@ namespace lambert {
 /// regular file, unreadable or empty.
 std::string readInputFile(const std::filesystem::path& path);
 
+/// The same file at its first byte, to be read in pieces. Throws InputError as readInputFile.
+std::ifstream openInputFile(const std::filesystem::path& path);
+
 struct ReadOptions;
 
 /// The path of a file that a scene names, relative to the scene's `folder`. Backslashes of Windows and another case of
@@ -17,6 +21,12 @@ struct ReadOptions;
 /// `options.allowOutsideFiles` is not set.
 std::filesystem::path namedFile(const std::filesystem::path& folder, const std::string& name,
                                 const ReadOptions& options);
+
+/// `text` as it stands if it is UTF-8; if not, its bytes are taken as Latin-1.
+std::string asUtf8(std::string_view text);
+
+/// With the letters A to Z made small.
+std::string lowerCase(std::string_view text);
 
 /// `text` in double quotes for a message of one line: at most 60 characters, control characters made
 /// harmless.

@@ -1,162 +1,223 @@
 #include "core/error.h"
 #include "scene/input_file.h"
-#include "scene/obj_syntax.h"
+#include "scene/obj_lines.h"
+#include "scene/obj_material.h"
+#include "scene/obj_vertices.h"
 #include "scene/scene_builder.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
-#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <map>
-#include <sstream>
+#include <functional>
+#include <system_error>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace lambert {
 
 namespace {
 
-/// The files that an `mtllib` statement names: one with spaces in its name, or several.
-std::vector<std::filesystem::path> libraryPaths(const std::string& argument, const std::filesystem::path& folder) {
-    const auto existing = [&](std::string name) -> std::filesystem::path {
-        std::filesystem::path asWritten = folder / name;
-        std::error_code error;
-        if (std::filesystem::exists(asWritten, error)) return asWritten;
-        std::replace(name.begin(), name.end(), '\\', '/'); // written on Windows
-        return folder / name;
-    };
-    std::error_code error;
-    if (std::filesystem::path whole = existing(argument); std::filesystem::exists(whole, error)) return {whole};
-    std::vector<std::filesystem::path> paths;
-    std::istringstream words(argument);
-    for (std::string word; words >> word;) paths.push_back(existing(word));
-    return paths;
-}
+/// CGAL needs some 500 bytes for a corner, and time that may grow with the square.
+constexpr std::size_t kMostCorners = std::size_t{1} << 16;
 
-/// Adds the materials of one MTL file, in its order; of two with the same name the first counts.
-void addLibrary(SceneBuilder& builder, const std::filesystem::path& path,
-                std::map<std::string, std::uint32_t>& materials) {
-    std::string text;
-    try {
-        text = readInputFile(path);
-    } catch (const InputError& error) {
-        builder.warn(fmt::format("mtllib {}", error.what()));
-        return;
-    }
-    MtlText checked = checkMtl(path.string(), text);
-    for (const std::string& warning : checked.warnings) builder.warn(warning);
-
-    std::istringstream stream(std::move(checked.statements));
-    std::map<std::string, int> numbers;
-    std::vector<tinyobj::material_t> found;
-    std::string warnings, errors;
-    tinyobj::LoadMtl(&numbers, &found, &stream, &warnings, &errors);
-    for (const tinyobj::material_t& source : found) {
-        if (source.name.empty()) continue; // tinyobjloader ends every list with one of these, if not a real one
-        if (materials.contains(source.name)) {
-            builder.warn(fmt::format("material {} is defined again in {}: the first counts", inQuotes(source.name),
-                                     path.string()));
-            continue;
-        }
-        Material material;
-        material.name = source.name;
-        material.reflectance = Rgb(source.diffuse[0], source.diffuse[1], source.diffuse[2]);
-        material.emittedRadiance = Rgb(source.emission[0], source.emission[1], source.emission[2]);
-        materials.emplace(source.name, builder.addMaterial(std::move(material)));
-    }
-}
-
-struct TinyObj {
-    tinyobj::attrib_t attributes;
-    std::vector<tinyobj::shape_t> shapes;
+/// What references count, for messages.
+struct Numbered {
+    const char *one, *many;
 };
+constexpr Numbered kVertex{"vertex", "vertices"};
+constexpr Numbered kTextureCoordinate{"texture coordinate", "texture coordinates"};
 
-TinyObj loadTinyObj(const std::string& file, ObjText& checked) {
-    TinyObj result;
-    std::vector<tinyobj::material_t> materials;
-    std::string warnings, errors;
-    std::string names; // so that `usemtl N` becomes material N
-    for (std::size_t k = 0; k < checked.materials.size(); ++k) names += fmt::format("newmtl {}\n", k);
-    std::istringstream nameStream(std::move(names));
-    tinyobj::MaterialStreamReader nameReader(nameStream);
-    std::istringstream stream("mtllib names\n" + std::exchange(checked.statements, {}));
-    if (!tinyobj::LoadObj(&result.attributes, &result.shapes, &materials, &warnings, &errors, &stream, &nameReader,
-                          false, false))
-        throw InputError(file + ": " + oneLine(errors));
-    return result;
-}
-
-/// Calls a function with the name that was turned into a number, or "default" where there was none.
-class NameTable {
+/// Goes through the file a second time and adds its faces.
+class FaceReader {
 public:
-    template <typename Add>
-    std::uint32_t index(int number, Add&& add) {
-        const auto [entry, isNew] = indices_.try_emplace(number, 0);
-        if (isNew) entry->second = add();
-        return entry->second;
+    FaceReader(ObjLines& lines, const ObjVertices& vertices, ObjMaterials& materials, SceneBuilder& builder)
+        : lines_(lines), vertices_(vertices), materials_(materials), builder_(builder) {}
+
+    void run() {
+        while (const auto line = lines_.next()) readStatement(*line);
+        if (withoutUv_ > 0)
+            builder_.warn(fmt::format("{} polygons of materials with an image have no texture coordinates: 0 0 is used",
+                                      withoutUv_));
     }
 
 private:
-    std::map<int, std::uint32_t> indices_;
-};
-
-void addPolygons(SceneBuilder& builder, const TinyObj& source, const ObjText& checked,
-                 std::map<std::string, std::uint32_t>& materials) {
-    NameTable materialTable, nodeTable;
-    std::vector<std::uint32_t> corners;
-    std::size_t face = 0;
-    for (const tinyobj::shape_t& shape : source.shapes) {
-        const int group = shape.name.empty() ? -1 : std::stoi(shape.name);
-        const std::uint32_t node = nodeTable.index(group, [&] {
-            return builder.addNode(group < 0 ? "default" : checked.groups[static_cast<std::size_t>(group)]);
-        });
-        std::size_t begin = 0;
-        for (std::size_t k = 0; k < shape.mesh.num_face_vertices.size(); ++k, ++face) {
-            const auto wide = checked.wideFaces.find(face);
-            const std::size_t size = wide != checked.wideFaces.end() ? wide->second : shape.mesh.num_face_vertices[k];
-            corners.clear();
-            for (std::size_t c = 0; c < size; ++c)
-                corners.push_back(static_cast<std::uint32_t>(shape.mesh.indices[begin + c].vertex_index));
-            begin += size;
-
-            const int number = shape.mesh.material_ids[k];
-            const std::uint32_t material = materialTable.index(number, [&] {
-                const std::string name = number < 0 ? "default" : checked.materials[static_cast<std::size_t>(number)];
-                const auto known = materials.find(name);
-                if (known != materials.end()) return known->second;
-                if (name != "default")
-                    builder.warn(fmt::format("material {} is not defined: its reflectance is 0.5", inQuotes(name)));
-                return materials.emplace(name, builder.addMaterial({.name = name})).first->second;
-            });
-            builder.addPolygon(corners, material, node);
+    void readStatement(const ObjLine& line) {
+        const std::string_view keyword = line.keyword;
+        if (keyword == "f" || keyword == "fo") {
+            readFace(line);
+        } else if (keyword == "v") {
+            ++positionsBefore_;
+        } else if (keyword == "vt") {
+            ++uvBefore_;
+        } else if (keyword == "g" || keyword == "o") {
+            nodeName_ = line.rest.empty() ? "default" : asUtf8(line.rest);
+            nodeIsKnown_ = false;
+        } else if (keyword == "usemtl") {
+            materialName_ = line.rest.empty() ? kNoMaterial : asUtf8(line.rest);
+            material_ = nullptr;
         }
     }
+
+    void readFace(const ObjLine& line) {
+        // Materials and nodes without a face do not count.
+        if (!material_) material_ = &materials_.find(materialName_);
+        if (!nodeIsKnown_) node_ = nodeIndex();
+
+        corners_.clear();
+        surface_.clear();
+        const bool varies = material_->textured || material_->tinted;
+        bool hasUv = true;
+        std::string_view rest = line.rest;
+        for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
+            const Reference reference = parseReference(word, line.number);
+            corners_.push_back(reference.position);
+            if (corners_.size() > kMostCorners)
+                failAt(lines_.file(), line.number, line.text, fmt::format("at most {} vertices after f", kMostCorners));
+            if (varies) {
+                surface_.push_back(cornerSurface(reference, word, line.number));
+                hasUv = hasUv && reference.uv != 0;
+            }
+        }
+        if (corners_.size() < 3) failAt(lines_.file(), line.number, line.text, "at least 3 vertices after f");
+        if (material_->textured && !hasUv) ++withoutUv_;
+        builder_.addPolygon(corners_, material_->index, node_, surface_);
+    }
+
+    struct Reference {
+        std::uint32_t position; //!< SceneBuilder's
+        long long uv;           //!< as written; 0: none
+    };
+
+    /// Checks v, v/vt, v//vn or v/vt/vn.
+    Reference parseReference(std::string_view reference, std::size_t line) const {
+        const char* next = reference.data();
+        const char* const end = next + reference.size();
+        std::array<long long, 3> indices{};
+        for (std::size_t part = 0;; ++part) {
+            const auto [stop, error] = std::from_chars(next, end, indices[part]);
+            const bool isIndex = error == std::errc{} && indices[part] != 0;
+            const bool leftOut = part > 0 && (next == end || *next == '/');
+            if (!isIndex && !leftOut) failAtReference(reference, line);
+            next = stop;
+            if (next == end) break;
+            if (*next != '/' || part == 2) failAtReference(reference, line);
+            ++next;
+        }
+        return {static_cast<std::uint32_t>(
+                    resolve(indices[0], positionsBefore_, vertices_.positions, kVertex, reference, line)),
+                indices[1]};
+    }
+
+    SceneBuilder::CornerSurface cornerSurface(const Reference& corner, std::string_view reference,
+                                              std::size_t line) const {
+        SceneBuilder::CornerSurface result;
+        if (material_->tinted) result.tint = vertices_.tints[corner.position];
+        if (material_->textured && corner.uv != 0) {
+            const std::size_t index =
+                resolve(corner.uv, uvBefore_, vertices_.uv.size(), kTextureCoordinate, reference, line);
+            result.uv = material_->uv(vertices_.uv[index]);
+            result.emissionUv = material_->emissionUv(vertices_.uv[index]);
+        }
+        return result;
+    }
+
+    /// An index counted from 1, or back from this line, as one counted from 0.
+    std::size_t resolve(long long index, std::size_t before, std::size_t all, const Numbered& what,
+                        std::string_view reference, std::size_t line) const {
+        if (index > 0) {
+            if (std::cmp_greater(index, all))
+                failAt(lines_.file(), line, reference, fmt::format("a {} that exists: the file has {}", what.one, all));
+            return static_cast<std::size_t>(index - 1);
+        }
+        const auto count = static_cast<long long>(before);
+        if (index < -count)
+            failAt(lines_.file(), line, reference,
+                   fmt::format("a {} that exists: {} {} lie before this line", what.one, before, what.many));
+        return static_cast<std::size_t>(count + index);
+    }
+
+    [[noreturn]] void failAtReference(std::string_view reference, std::size_t line) const {
+        failAt(lines_.file(), line, reference, "a reference v, v/vt, v//vn or v/vt/vn of integers other than 0");
+    }
+
+    std::uint32_t nodeIndex() {
+        nodeIsKnown_ = true;
+        const auto [entry, isNew] = nodes_.try_emplace(nodeName_, 0);
+        if (isNew) entry->second = builder_.addNode(nodeName_);
+        return entry->second;
+    }
+
+    ObjLines& lines_;
+    const ObjVertices& vertices_;
+    ObjMaterials& materials_;
+    SceneBuilder& builder_;
+
+    std::size_t positionsBefore_ = 0;
+    std::size_t uvBefore_ = 0;
+    std::string materialName_ = kNoMaterial;
+    const ObjMaterial* material_ = nullptr; //!< of materialName_, once a face has it
+    std::string nodeName_ = "default";
+    std::uint32_t node_ = 0;
+    bool nodeIsKnown_ = false;
+    std::unordered_map<std::string, std::uint32_t> nodes_;
+    std::size_t withoutUv_ = 0;
+    // Of the face at work:
+    std::vector<std::uint32_t> corners_;
+    std::vector<SceneBuilder::CornerSurface> surface_;
+};
+
+/// Reports the bytes of a file that is gone through twice.
+class ReadProgress {
+public:
+    ReadProgress(Progress* progress, const std::filesystem::path& path) : progress_(progress) {
+        std::error_code missing; // opening it will tell
+        const auto size = std::filesystem::file_size(path, missing);
+        if (progress_) progress_->begin("read", missing ? 0 : size);
+    }
+    std::function<void(std::uint64_t)> counter() {
+        return [this](std::uint64_t bytes) {
+            if (progress_) progress_->advance((gone_ + bytes) / 2 - gone_ / 2);
+            gone_ += bytes;
+        };
+    }
+    void end() {
+        if (progress_) progress_->end();
+    }
+
+private:
+    Progress* progress_;
+    std::uint64_t gone_ = 0;
+};
+
+void warnOfIgnored(const ObjVertices& file, SceneBuilder& builder) {
+    std::string ignored;
+    if (file.pointsAndLines > 0) ignored = fmt::format("{} points or lines", file.pointsAndLines);
+    if (file.curvesAndSurfaces > 0)
+        ignored += fmt::format("{}{} curves or surfaces", ignored.empty() ? "" : " and ", file.curvesAndSurfaces);
+    if (!ignored.empty()) builder.warn(ignored + " were ignored");
 }
 
 } // namespace
 
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
-    if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
-                                     options.metresPerUnit));
-    const std::string file = path.string();
-    ObjText checked = checkObj(file, readInputFile(path));
+    ReadProgress progress(options.progress, path);
+    SceneBuilder builder(path.string(), options);
 
-    SceneBuilder builder(file, options);
-    std::map<std::string, std::uint32_t> materials;
-    std::vector<std::filesystem::path> libraries;
-    for (const std::string& argument : checked.libraries)
-        for (const std::filesystem::path& library : libraryPaths(argument, path.parent_path()))
-            if (std::find(libraries.begin(), libraries.end(), library) == libraries.end()) libraries.push_back(library);
-    for (const std::filesystem::path& library : libraries) addLibrary(builder, library, materials);
+    ObjLines first(path, progress.counter());
+    const ObjVertices vertices = readObjVertices(first, options.metresPerUnit, builder);
+    builder.reserve(vertices.positions, vertices.faces);
 
-    const TinyObj source = loadTinyObj(file, checked);
-    const std::vector<float>& vertices = source.attributes.vertices;
-    for (std::size_t k = 0; k + 2 < vertices.size(); k += 3)
-        builder.addPosition(glm::dvec3(vertices[k], vertices[k + 1], vertices[k + 2]) * options.metresPerUnit);
-    addPolygons(builder, source, checked, materials);
-    if (checked.ignoredElements > 0)
-        builder.warn(fmt::format("{} points or lines were ignored", checked.ignoredElements));
+    ObjMaterials materials(builder, options, path.parent_path(), !vertices.tints.empty());
+    for (const std::string& library : vertices.libraries) materials.addLibraries(library);
+
+    ObjLines second(path, progress.counter());
+    FaceReader(second, vertices, materials, builder).run();
+    materials.warnOfReplacements();
+    warnOfIgnored(vertices, builder);
+    progress.end();
     return builder.finish();
 }
 

@@ -44,11 +44,26 @@ void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene) {
 }
 
 LAMBERT_VECTOR_CLONES
-void load(const glm::vec3& origin, const RayPacket& packet, RTCRayHit16& rays) {
+void loadOrigin(const glm::vec3& origin, RTCRayHit16& rays) {
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         rays.ray.org_x[lane] = origin.x;
         rays.ray.org_y[lane] = origin.y;
         rays.ray.org_z[lane] = origin.z;
+    }
+}
+
+LAMBERT_VECTOR_CLONES
+void loadOrigins(const RayOrigins& origins, RTCRayHit16& rays) {
+    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+        rays.ray.org_x[lane] = origins.x[lane];
+        rays.ray.org_y[lane] = origins.y[lane];
+        rays.ray.org_z[lane] = origins.z[lane];
+    }
+}
+
+LAMBERT_VECTOR_CLONES
+void loadDirections(const RayPacket& packet, RTCRayHit16& rays) {
+    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         rays.ray.dir_x[lane] = packet.directionX[lane];
         rays.ray.dir_y[lane] = packet.directionY[lane];
         rays.ray.dir_z[lane] = packet.directionZ[lane];
@@ -94,6 +109,16 @@ struct RayCaster::Impl {
     float largestCoordinate = 0.0F;
     RTCDevice device = nullptr;
     RTCScene embree = nullptr;
+
+    /// `rays` hold the origins, `packet` the directions.
+    void trace(RTCRayHit16& rays, RayPacket& packet) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        loadDirections(packet, rays);
+        rtcIntersect16(packet.active, embree, &context, &rays);
+        store(rays, packet);
+    }
 
     ~Impl() {
         if (embree != nullptr) rtcReleaseScene(embree);
@@ -148,13 +173,15 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     assert(isFinite(origin));
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     alignas(64) RTCRayHit16 rays;
-    load(origin, packet, rays);
-    rtcIntersect16(packet.active, impl_->embree, &context, &rays);
-    store(rays, packet);
+    loadOrigin(origin, rays);
+    impl_->trace(rays, packet);
+}
+
+void RayCaster::closest(const RayOrigins& origins, RayPacket& packet) const {
+    alignas(64) RTCRayHit16 rays;
+    loadOrigins(origins, rays);
+    impl_->trace(rays, packet);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {

@@ -32,6 +32,11 @@ struct alignas(64) RayPacket {
     float facing[kSize];          //!< out: direction · geometric normal; negative on the front
 };
 
+/// Origins of a packet's rays, if they do not share one.
+struct alignas(64) RayOrigins {
+    float x[RayPacket::kSize], y[RayPacket::kSize], z[RayPacket::kSize];
+};
+
 /// The point of a polygon with chart coordinates (u, v). A triangle's chart is v0 + u (v1 − v0) + v (v2 − v0).
 /// A quad's is affine on each of the triangles (v0, v1, v3), where u + v <= 1, and (v2, v3, v1).
 glm::vec3 polygonPoint(const Scene& scene, std::uint32_t polygon, float u, float v);
@@ -48,6 +53,8 @@ public:
     std::optional<Hit> closest(const Ray& ray) const;
     /// First hits of 16 rays from `origin`, fastest if their directions are close to each other.
     void closest(const glm::vec3& origin, RayPacket& packet) const;
+    /// The same for rays with origins of their own.
+    void closest(const RayOrigins& origins, RayPacket& packet) const;
     /// Whether anything lies on the ray before its maxDistance.
     bool occluded(const Ray& ray) const;
 

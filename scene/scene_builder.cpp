@@ -18,9 +18,8 @@ namespace lambert {
 
 namespace {
 
-constexpr float kMaxReflectance = 0.99F; // above it the number of bounces grows without bound
-constexpr double kMaxOffPlane = 1e-5;    // of a quad's longest diagonal
-constexpr double kMinCornerSine = 1e-5;  // flatter corners would leave a quad's half without area
+constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
+constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -83,6 +82,11 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
 } // namespace
 
 SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
+
+void SceneBuilder::reserve(std::size_t positions, std::size_t polygons) {
+    result_.scene.positions.reserve(positions);
+    result_.scene.polygons.reserve(polygons);
+}
 
 std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     auto& positions = result_.scene.positions;

@@ -11,12 +11,18 @@
 
 namespace lambert {
 
+/// Per channel; above it the number of bounces grows without bound.
+inline constexpr float kMaxReflectance = 0.99F;
+
 /// What all readers share: takes what a file says and makes a Scene of triangles and convex planar quads of
 /// it, counting and naming what has to be dropped or changed on the way.
 class SceneBuilder {
 public:
     /// `file` stands at the beginning of every message.
     SceneBuilder(std::string file, const ReadOptions& options);
+
+    /// Takes the memory for this many, so that growing does not need it twice. More or fewer may follow.
+    void reserve(std::size_t positions, std::size_t polygons);
 
     /// Adds a vertex, in metres, and returns its index. Coordinates that are not finite in single precision
     /// are allowed: the polygons that use them are dropped and counted.

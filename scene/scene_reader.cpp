@@ -5,18 +5,36 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
+#include <string_view>
 
 namespace lambert {
 
+namespace {
+
+struct Format {
+    std::string_view extension;
+    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
+};
+
+constexpr Format kFormats[] = {
+    {".obj", readObj}, {".gltf", readGltf}, {".glb", readGltf}, {".ply", readPly}, {".stl", readStl},
+};
+
+} // namespace
+
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (extension == ".obj") return readObj(path, options);
-    if (extension == ".gltf" || extension == ".glb") return readGltf(path, options);
-    throw InputError(fmt::format("{}: found the extension {}, allowed are .obj, .gltf and .glb", path.string(),
-                                 inQuotes(path.extension().string())));
+    if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
+        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
+                                     options.metresPerUnit));
+    const std::string extension = lowerCase(path.extension().string());
+    std::string allowed;
+    for (const Format& format : kFormats) {
+        if (extension == format.extension) return format.read(path, options);
+        allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", format.extension);
+    }
+    throw InputError(fmt::format("{}: found the extension {}, allowed are {}", path.string(),
+                                 inQuotes(path.extension().string()), allowed));
 }
 
 } // namespace lambert

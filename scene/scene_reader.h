@@ -33,7 +33,8 @@ struct ReadResult {
 };
 
 /// Reads a scene by the extension of its name: .obj, .gltf, .glb, .ply, .stl or .mgf. All lengths of the result are metres.
-/// Throws InputError, with file and place, if the file cannot be used; UsageError for `metresPerUnit` with glTF.
+/// Throws InputError, with file and place, if the file cannot be used; UsageError if `metresPerUnit` is not above 0 and finite,
+/// or not 1 for glTF.
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The readers behind readScene.

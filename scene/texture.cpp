@@ -15,6 +15,8 @@
 
 namespace lambert {
 
+double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
+
 namespace {
 
 /// A plain square of 16,384 texels.

@@ -13,6 +13,9 @@
 
 namespace lambert {
 
+/// The linear value of an sRGB-encoded one; both 0 to 1.
+double srgbDecoded(double value);
+
 /// An image on a surface: texels are constant squares, row 0 is at the top. Immutable.
 class Texture {
 public:
@@ -34,7 +37,7 @@ private:
     std::vector<glm::vec4> floats_; //!< one of the two is empty
 };
 
-/// The linear value of an sRGB one, both 0 to 1.
+/// The linear value of an sRGB-encoded one, both in [0, 1].
 double srgbDecoded(double value);
 
 /// How the numbers of an image become a texture.

@@ -14,11 +14,10 @@ namespace {
 
 /// E = F B.
 void gather(const FormFactorMatrix& matrix, const std::vector<RgbSum>& radiosity, std::vector<RgbSum>& irradiance) {
-    parallelFor(matrix.rows.size(), 64, [&](std::size_t begin, std::size_t end, int) {
+    parallelFor(matrix.size(), 64, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t i = begin; i < end; ++i) {
             RgbSum sum(0.0);
-            for (const FormFactor& entry : matrix.rows[i].entries)
-                sum += static_cast<double>(entry.value) * radiosity[entry.patch];
+            matrix.visit(i, [&](std::uint32_t j, double factor) { sum += factor * radiosity[j]; });
             irradiance[i] = sum;
         }
     });
@@ -61,7 +60,7 @@ RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& mat
         if (solution.residual <= options.tolerance) break;
     }
     progress.end();
-    for (const FormFactorRow& row : matrix.rows) solution.covered.push_back(static_cast<float>(row.back));
+    for (std::size_t i = 0; i < count; ++i) solution.covered.push_back(static_cast<float>(matrix.back(i)));
     solution.energy = energyBalance(mesh, matrix, solution);
     return solution;
 }
@@ -72,8 +71,8 @@ EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matri
         const auto area = static_cast<double>(mesh.area[i]);
         energy.emitted += area * RgbSum(mesh.emittedRadiosity[i]);
         energy.absorbed += area * (RgbSum(1.0) - RgbSum(mesh.reflectance[i])) * solution.irradiance[i];
-        energy.backFaces += area * matrix.rows[i].back * solution.radiosity[i];
-        energy.escaped += area * matrix.rows[i].out * solution.radiosity[i];
+        energy.backFaces += area * matrix.back(i) * solution.radiosity[i];
+        energy.escaped += area * matrix.out(i) * solution.radiosity[i];
     }
     return energy;
 }

@@ -153,6 +153,44 @@ TEST(TriangulatePolygon, RefusesCoincidingPoints) {
     EXPECT_FALSE(triangulatePolygon(squareWith({{4, 4}}), 4).has_value());
 }
 
+double coveredArea(const Points& points) {
+    const auto triangles = triangulatePolygon(points, points.size());
+    if (!triangles) return -1.0;
+    double area = 0.0;
+    for (const auto& t : *triangles) {
+        const double part = signedArea(points[t[0]], points[t[1]], points[t[2]]);
+        EXPECT_GT(part, 0.0);
+        area += part;
+    }
+    return area;
+}
+
+// Small integers: the areas are exact.
+TEST(TriangulatePolygon, LeavesOutAHoleAtABridge) {
+    EXPECT_EQ(coveredArea({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}), 12.0);
+    // Two holes: the second bridge begins at the first hole.
+    const Points twoHoles{{0, 0}, {8, 0}, {8, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3},
+                          {3, 1}, {5, 1}, {5, 3}, {7, 3}, {7, 1}, {5, 1}, {3, 1}, {1, 1}};
+    EXPECT_EQ(coveredArea(twoHoles), 24.0);
+    // The bridge passes through a corner of the hole.
+    EXPECT_EQ(coveredArea({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {3, 3}, {3, 1}, {1, 1}, {1, 3}, {3, 3}}), 12.0);
+}
+
+TEST(TriangulatePolygon, CoversBothPartsOfABorderThatTouchesItself) {
+    // Two squares that share a corner; then a corner on an edge.
+    EXPECT_EQ(coveredArea({{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {2, 2}, {0, 2}}), 8.0);
+    EXPECT_EQ(coveredArea({{0, 0}, {4, 0}, {4, 4}, {3, 4}, {2, 0}, {1, 4}, {0, 4}}), 12.0);
+    // A spike out and back has no area.
+    EXPECT_EQ(coveredArea({{0, 0}, {2, 0}, {2, 2}, {3, 3}, {2, 2}, {0, 2}}), 4.0);
+}
+
+TEST(TriangulatePolygon, RefusesABorderThatCoversSomethingTwiceOrClockwise) {
+    EXPECT_EQ(coveredArea({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {3, 1}, {3, 3}, {1, 3}, {1, 1}}), -1.0);
+    EXPECT_EQ(coveredArea({{0, 0}, {0, 4}, {4, 4}, {4, 0}}), -1.0);
+    // Two squares that share a corner, one of them clockwise.
+    EXPECT_EQ(coveredArea({{0, 0}, {4, 0}, {4, 4}, {4, 6}, {6, 6}, {6, 4}, {4, 4}, {0, 4}}), -1.0);
+}
+
 TEST(TriangulatePolygon, RefusesWhatHasNoArea) {
     EXPECT_FALSE(triangulatePolygon(Points{{0, 0}, {1, 0}, {2, 0}}, 3).has_value());
     EXPECT_FALSE(triangulatePolygon(Points{}, 0).has_value());

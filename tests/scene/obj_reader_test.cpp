@@ -165,6 +165,66 @@ TEST_F(ObjReader, IgnoresUnknownStatementsPointsAndLines) {
     EXPECT_TRUE(hasWarning(result, "3 points or lines"));
 }
 
+TEST_F(ObjReader, IgnoresCurvesAndSurfacesWithACount) {
+    const ReadResult result = read(kTriangle + "vp 0.1\ncstype bezier\ndeg 3\ncurv 0 1 1 2 3\nparm u 0 1\nend\n"
+                                               "surf 0 1 0 1 1 2 3\np 1\nf 1 2 3");
+    ASSERT_EQ(result.report.warnings.size(), 1U);
+    EXPECT_TRUE(hasWarning(result, "1 points or lines and 2 curves or surfaces were ignored"));
+}
+
+TEST_F(ObjReader, LeavesOutHolesAtBridges) {
+    const ReadResult result = read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
+                                   "f 1 2 3 4 1 5 6 7 8 5\n");
+    EXPECT_NEAR(totalArea(result.scene), 12.0, 1e-6);
+    EXPECT_TRUE(result.report.warnings.empty());
+}
+
+TEST_F(ObjReader, ReadsFilesOfManyPiecesWithAnyLineEnding) {
+    // Pieces are of a megabyte, so that each of them ends in another byte of a line.
+    for (const std::string end : {"\n", "\r\n", "\r", " \\\n\n"}) {
+        std::string obj;
+        constexpr int kTriangles = 40000;
+        for (int k = 0; k < kTriangles; ++k)
+            obj += fmt::format("v {0} 0 0{1}v {0} 2 0{1}v {0} 0 1{1}f -3 -2 -1{1}", k, end);
+        const ReadResult result = read(obj);
+        ASSERT_EQ(result.scene.polygons.size(), static_cast<std::size_t>(kTriangles));
+        EXPECT_EQ(totalArea(result.scene), double{kTriangles}); // each is of area 1
+    }
+}
+
+TEST_F(ObjReader, RefusesUtf16ByItsName) {
+    expectError(std::string("\xFF\xFEv\0 \0", 6), "found UTF-16 text, expected UTF-8 or Latin-1");
+    expectError(std::string("\xFE\xFF\0v", 4), "found UTF-16");
+}
+
+TEST_F(ObjReader, RefusesOverlongStatementsAndPolygons) {
+    std::string face = "f";
+    for (int k = 0; k < 70000; ++k) face += " 1";
+    expectError(kTriangle + face, "scene.obj:4: found \"f 1 1");
+    expectError(kTriangle + face, "expected at most 65536 vertices after f");
+    expectError(kTriangle + std::string((std::size_t{1} << 26) + (1 << 21), 'x'), "scene.obj:4: found a statement of");
+    std::string continued;
+    for (int k = 0; k < 70; ++k) continued += std::string(1 << 20, 'x') + "\\\n";
+    expectError(kTriangle + continued, "found a statement of more than 67108864 bytes");
+}
+
+TEST_F(ObjReader, ReportsItsProgressInBytesAndCanBeCancelled) {
+    struct Counted : Progress {
+        std::uint64_t done = 0, total = 0;
+        bool ended = false;
+        void onBegin(std::string_view, std::uint64_t bytes) override { total = bytes; }
+        void onAdvance(std::uint64_t soFar, std::uint64_t) override { done = soFar; }
+        void onEnd() override { ended = true; }
+    } progress;
+    const std::string obj = kTriangle + "f 1 2 3\n" + std::string(3000000, '#');
+    read(obj, {.progress = &progress});
+    EXPECT_EQ(progress.total, obj.size());
+    EXPECT_EQ(progress.done, obj.size());
+    EXPECT_TRUE(progress.ended);
+    progress.cancel();
+    EXPECT_THROW(read(obj, {.progress = &progress}), Cancelled);
+}
+
 TEST_F(ObjReader, RejectsIndexPastTheLastVertex) {
     expectError(kTriangle + "f 1 2 3\nf 1 2 4\n",
                 "scene.obj:5: found \"4\", expected a vertex that exists: the file has 3");
@@ -203,6 +263,7 @@ TEST_F(ObjReader, RejectsMalformedFilesWithLineAndText) {
     expectError("v " + std::string(100000, 'x'), "xxx...\"");
     expectError(kTriangle, "found no polygons");
     expectError(kTriangle + "f 1 1 2\n", "1 without area");
+    expectError("v 0 0 0 1 0 x\n", "scene.obj:1: found \"x\"");
     expectError("", "the file is empty");
     expectError(std::string("\0\xff\xfe\0binary", 10), "found no polygons");
 }
@@ -225,7 +286,7 @@ TEST_F(ObjReader, RejectsWhatIsNotAReadableFile) {
     expectInputError(folder.path() / "none.obj", "none.obj: no such file");
     std::filesystem::create_directory(folder.path() / "folder.obj");
     expectInputError(folder.path() / "folder.obj", "folder.obj: found a folder");
-    expectInputError(folder.write("scene.fbx", "x"), "allowed are .obj, .gltf and .glb");
+    expectInputError(folder.write("scene.fbx", "x"), "allowed are .obj, .gltf, .glb, .ply, .stl");
     expectInputError(folder.write("scene", "x"), "found the extension \"\"");
 }
 

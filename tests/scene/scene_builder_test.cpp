@@ -81,6 +81,23 @@ TEST_F(SceneBuilderTest, SplitsAConcavePolygonInAnyPlaneWithoutChangingAreaOrFro
         EXPECT_GT(glm::dot(glm::dvec3(areaVector(result.scene, polygon)), glm::cross(u, v)), 0.0);
 }
 
+TEST_F(SceneBuilderTest, KeepsTheAreaOfPolygonsThatTouchThemselves) {
+    // A square hole at a bridge, and two squares with a common corner, in a plane that is aligned with nothing.
+    const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
+    const glm::dvec3 v = glm::normalize(glm::cross(glm::dvec3(-3, 1, 2), u));
+    const std::vector<std::vector<glm::dvec2>> polygons = {
+        {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},
+        {{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {2, 2}, {0, 2}}};
+    for (const std::vector<glm::dvec2>& polygon : polygons) {
+        std::vector<glm::dvec3> points;
+        for (const glm::dvec2& p : polygon) points.push_back(p.x * u + p.y * v);
+        add(points);
+    }
+    const ReadResult result = builder.finish();
+    EXPECT_NEAR(totalArea(result.scene), 12.0 + 8.0, 1e-5); // single precision
+    EXPECT_TRUE(result.report.warnings.empty());
+}
+
 TEST_F(SceneBuilderTest, SplitsASelfCrossingPolygonIntoAFanWithAWarning) {
     add({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 3, 0}});
     const ReadResult result = builder.finish();

@@ -25,12 +25,13 @@ PatchMesh patchesWith(std::span<const float> reflectance, std::span<const float>
 }
 
 FormFactorMatrix dense(std::size_t count, const std::function<double(std::size_t, std::size_t)>& factor) {
-    FormFactorMatrix matrix;
-    matrix.rows.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
+    FormFactorMatrix matrix(count, MatrixStorage::Double);
+    for (std::size_t i = 0; i < count; ++i) {
+        FormFactorRow row;
         for (std::size_t j = 0; j < count; ++j)
-            if (const double f = factor(i, j); f > 0.0)
-                matrix.rows[i].entries.push_back({static_cast<std::uint32_t>(j), static_cast<float>(f)});
+            if (const double f = factor(i, j); f > 0.0) row.entries.push_back({static_cast<std::uint32_t>(j), f});
+        matrix.setRow(i, row);
+    }
     return matrix;
 }
 
@@ -113,7 +114,11 @@ TEST(Jacobi, EnergyBalancesWithReciprocalRowsAndEachTermIsItsOwn) {
     // Half of what leaves a patch reaches the other, a quarter a black back, a quarter the outside.
     PatchMesh mesh = patchesWith(std::array{0.5F, 0.25F}, std::array{1.0F, 0.0F});
     FormFactorMatrix matrix = dense(2, [](std::size_t i, std::size_t j) { return i == j ? 0.0 : 0.5; });
-    for (FormFactorRow& row : matrix.rows) row.back = row.out = 0.25;
+    for (std::size_t i = 0; i < 2; ++i) {
+        FormFactorRow row = matrix.row(i);
+        row.back = row.out = 0.25;
+        matrix.setRow(i, row);
+    }
     Progress progress;
     const auto solution = solveJacobi(mesh, matrix, {.tolerance = 1e-14}, progress);
     const double b0 = 1.0 / (1.0 - 0.5 * 0.5 * 0.25 * 0.5);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+namespace lambert {
+
+/// Low-discrepancy sequences. "Index" counts from 0; index 0 of all of them is the origin, so quasi-random walks that
+/// must not start there count from 1.
+
+/// The `k`-th prime, k = 0 being 2; k < kPrimes.
+inline constexpr std::uint32_t kPrimes = 256;
+std::uint32_t prime(std::uint32_t k);
+
+/// Φ_b(index): the index's digits in base b >= 2, mirrored at the point. In [0, 1).
+double radicalInverse(std::uint32_t base, std::uint64_t index);
+
+/// Coordinate `dimension` < kPrimes of the Halton sequence: the radical inverse in the dimension's prime.
+double halton(std::uint64_t index, std::uint32_t dimension);
+
+/// The same with the digits permuted at random, each permutation chosen by the digits before it (after Owen 1995): any point
+/// becomes uniform in [0, 1), the set keeps its discrepancy. Equal seeds give equal points.
+double scrambledHalton(std::uint64_t index, std::uint32_t dimension, std::uint64_t seed);
+
+/// Coordinate `dimension` of the point `index` of `count` of the Hammersley set: (index / count, Halton...).
+double hammersley(std::uint64_t index, std::uint64_t count, std::uint32_t dimension);
+
+/// Coordinate `dimension` < kSobolDimensions of the Sobol sequence, as 32 bits after the point. Any 2^m successive points
+/// that begin at a multiple of 2^m are stratified in every dimension, and in dimensions 0 and 1 together.
+/// S. Joe, F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 2008.
+inline constexpr std::uint32_t kSobolDimensions = 16;
+std::uint32_t sobol(std::uint32_t index, std::uint32_t dimension);
+
+/// Nested uniform scrambling in base 2 (Owen 1995) of 32 bits after the point, by hashing.
+/// B. Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020.
+std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed);
+
+/// The place of `index` in a random permutation of 0 ... count − 1 that the seed chooses; index < count.
+std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t seed);
+
+} // namespace lambert

@@ -1,0 +1,78 @@
+#include "core/sample_points.h"
+
+#include "core/low_discrepancy.h"
+#include "core/random.h"
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kBelowOne = 1.0 - 0x1p-53;
+
+/// 53 random bits of a point's coordinate.
+double randomNumber(std::uint32_t index, std::uint32_t dimension, std::uint64_t seed) {
+    const auto bits = philox({index, dimension, 0, 0x53414D50}, seed);
+    return static_cast<double>(((std::uint64_t{bits[0]} << 32) | bits[1]) >> 11) * 0x1p-53;
+}
+
+std::uint32_t roundedUpRoot(std::uint32_t n) {
+    auto root = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(n)));
+    while (std::uint64_t{root} * root < n) ++root;
+    return root;
+}
+
+} // namespace
+
+std::optional<Sampler> samplerByName(std::string_view name) {
+    constexpr std::array<std::pair<std::string_view, Sampler>, 4> names{{{"random", Sampler::Random},
+                                                                         {"stratified", Sampler::Stratified},
+                                                                         {"halton", Sampler::Halton},
+                                                                         {"sobol", Sampler::Sobol}}};
+    for (const auto& [known, sampler] : names)
+        if (known == name) return sampler;
+    return std::nullopt;
+}
+
+SamplePoints::SamplePoints(Sampler sampler, std::uint32_t count, std::uint32_t dimensions, std::uint64_t seed)
+    : sampler_(sampler), count_(count), seed_(seed) {
+    assert(count >= 1 && dimensions <= kSobolDimensions);
+    for (std::uint32_t d = 0; d < dimensions; ++d) {
+        const auto key = philox({d, 0, 0, 0x4B455953}, seed);
+        keys_.push_back((std::uint64_t{key[0]} << 32) | key[1]);
+    }
+}
+
+double SamplePoints::at(std::uint32_t index, std::uint32_t dimension) const {
+    assert(index < count_ && dimension < dimensions());
+    switch (sampler_) {
+    case Sampler::Random:
+        return randomNumber(index, dimension, seed_);
+    case Sampler::Stratified:
+        return std::min(stratified(index, dimension), kBelowOne);
+    case Sampler::Halton:
+        return scrambledHalton(index, dimension, seed_);
+    case Sampler::Sobol:
+        break;
+    }
+    const std::uint32_t bits = owenScrambled(sobol(index, dimension), static_cast<std::uint32_t>(keys_[dimension]));
+    return (static_cast<double>(bits) + 0.5) * 0x1p-32;
+}
+
+/// Dimensions 2k and 2k + 1 share a grid of at least `count` cells, of which each point has one of its own; which one is
+/// shuffled per pair. A last dimension without partner has `count` intervals.
+double SamplePoints::stratified(std::uint32_t index, std::uint32_t dimension) const {
+    const double jitter = randomNumber(index, dimension, seed_);
+    if (dimension % 2 == 0 && dimension + 1 == dimensions())
+        return (permuted(index, count_, keys_[dimension]) + jitter) / count_;
+    const std::uint32_t columns = roundedUpRoot(count_);
+    const std::uint32_t rows = (count_ + columns - 1) / columns;
+    const std::uint32_t cell = permuted(index, columns * rows, keys_[dimension - dimension % 2]);
+    return dimension % 2 == 0 ? (cell % columns + jitter) / columns : (cell / columns + jitter) / rows;
+}
+
+} // namespace lambert

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "formfactors/form_factor_method.h"
+#include "meshing/patch_mesh.h"
+#include "scene/ray_caster.h"
+
+#include <vector>
+
+namespace lambert {
+
+struct HemisphereOptions {
+    int resolution = 96; //!< cells along an edge of the square that is mapped to the disk; multiple of 4, 4 to 4096
+    int perPatch = 1;    //!< hemispheres spread over a patch, 1 to 1024; more for patches with near neighbours
+    bool randomRotation = true; //!< turns each about its normal by an angle of its own
+    std::uint64_t seed = 1;     //!< of the angles and places
+};
+
+/// Form factors from points of each patch through cells of equal weight: the disk of Nusselt's analogue, divided by the
+/// concentric map, lifted to the hemisphere. Each of the R² directions is worth 1 / R².
+///
+/// W. Nusselt, "Graphische Bestimmung des Winkelverhältnisses bei der Wärmestrahlung", VDI-Zeitschrift 72, 1928; P. Shirley,
+/// K. Chiu 1997 (core/warps.h).
+class Hemisphere : public FormFactorMethod {
+public:
+    /// `mesh` and `rays` (of the same scene) must outlive the method. Throws UsageError for options out of range.
+    Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const HemisphereOptions& options);
+
+    void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
+    std::size_t patchCount() const override { return mesh_.size(); }
+    std::uint64_t raysPerRow() const override;
+
+private:
+    const PatchMesh& mesh_;
+    const RayCaster& rays_;
+    HemisphereOptions options_;
+    std::vector<glm::vec3> directions_; ///< #R², about +z, in tiles of 4 × 4 cells
+};
+
+} // namespace lambert

@@ -1,0 +1,38 @@
+#include "formfactors/viewpoints.h"
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/sample_points.h"
+#include "formfactors/patch_sampling.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lambert {
+
+void checkPerPatch(int perPatch) {
+    if (perPatch < 1 || perPatch > 1024)
+        throw UsageError(fmt::format("points per patch: found {}, allowed are 1 to 1024", perPatch));
+}
+
+Viewpoint viewpoint(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t patch, int index, int count,
+                    bool randomRotation, std::uint64_t seed) {
+    glm::vec3 point = mesh.centroid[patch];
+    if (count > 1) {
+        const auto key = philox({patch, 0, 0, 0x56494557}, seed);
+        const SamplePoints points(Sampler::Stratified, static_cast<std::uint32_t>(count), 2,
+                                  (std::uint64_t{key[0]} << 32) | key[1]);
+        const auto k = static_cast<std::uint32_t>(index);
+        point = PatchPoints(mesh, patch).at({points.at(k, 0), points.at(k, 1)});
+    }
+    Viewpoint result{point + rays.originOffset(std::sqrt(mesh.area[patch])) * mesh.normal[patch], 0.0F};
+    if (randomRotation) {
+        const auto random = philox({patch, static_cast<std::uint32_t>(index), 0, 0}, seed);
+        result.angle = 2.0F * std::numbers::pi_v<float> * uniformFloat(random[0]);
+    }
+    return result;
+}
+
+} // namespace lambert
