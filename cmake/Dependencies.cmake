@@ -6,7 +6,10 @@ find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 find_package(TinyGLTF CONFIG REQUIRED)
+# Debian's libdraco holds a tinygltf of its own, of another layout, and what is first among the libraries of a program is
+# what it gets. As a dependency of the real one Draco is always behind it: who needs Draco links TinyGLTF::TinyGLTF.
 find_package(draco CONFIG REQUIRED)
+set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(meshoptimizer CONFIG REQUIRED)
 find_package(tinyobjloader CONFIG REQUIRED)
 find_package(OpenImageIO CONFIG REQUIRED)
