@@ -33,8 +33,8 @@ CLI::Validator between(double lowest, double highest) {
 } // namespace
 
 void addSceneArguments(CLI::App& command, SceneArguments& a) {
-    command.add_option("scene", a.path, "Scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
-    command.add_option("--unit", a.unit, "Metres per unit of the file (OBJ only; glTF is in metres) [1]")
+    command.add_option("scene", a.path, "Scene: .gltf, .glb, .obj, .ply or .stl")->required()->type_name("SCENE");
+    command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
         ->type_name("METRES")
         ->group("Scene");
     command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");

@@ -9,7 +9,10 @@ import math
 import sys
 from pathlib import Path
 
+from polygon_files import write_ply, write_stl
 from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_obj
+
+WRITERS = {"gltf": write_gltf, "obj": write_obj, "ply": write_ply, "stl": write_stl}
 
 # ---- Shapes
 
@@ -234,16 +237,15 @@ def table_room():
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
-    return [(cornell_box(), both), (furnace_box(), both), (table_room(), both),
+    return [(cornell_box(), both), (furnace_box(), (*both, "ply", "stl")), (table_room(), both),
             *((case, ("obj",)) for case in analytic_cases())]
 
 
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
-    writers = {"gltf": write_gltf, "obj": write_obj}
     for scene, formats in scenes():
         for file_format in formats:
-            writers[file_format](scene, folder)
+            WRITERS[file_format](scene, folder)
 
 
 if __name__ == "__main__":

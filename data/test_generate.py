@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import generate
-from scene_files import placed, write_gltf, write_obj
+from scene_files import placed
 
 FOLDER = Path(__file__).parent
 SCENES = {scene.name: scene for scene, _ in generate.scenes()}
@@ -126,7 +126,7 @@ class Files(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for scene, formats in generate.scenes():
                 for name in formats:
-                    {"gltf": write_gltf, "obj": write_obj}[name](scene, Path(folder))
+                    generate.WRITERS[name](scene, Path(folder))
             for path in Path(folder).iterdir():
                 self.assertEqual(path.read_bytes(), (FOLDER / path.name).read_bytes(), path.name)
 

@@ -88,6 +88,8 @@ private:
         const auto u = element.findNumber({"s", "u", "texture_u"}), v = element.findNumber({"t", "v", "texture_v"});
         const bool hasCoordinates = !header_.textureFiles.empty() && u && v;
         PlyTints tints(element);
+        if (tints.present() && element.findNumber({"radiosity_r"}))
+            builder_.warn("holds baked light: its colours are read as reflectance, and no emission");
         forRecords(records, element, [&] {
             const glm::dvec3 position(records.number(*x), records.number(*y), records.number(*z));
             builder_.addPosition(position * options_.metresPerUnit);
