@@ -7,6 +7,10 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
 namespace lambert {
 
 namespace {
@@ -20,7 +24,32 @@ using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfo>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using NoCrossing = CGAL::No_constraint_intersection_requiring_constructions_tag;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, NoCrossing>;
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The triangles inside: the walk from infinity entered them by an odd number of edges for which `isBorder(face, edge)`.
+template <typename IsBorder>
+std::vector<std::array<std::uint32_t, 3>> trianglesInside(const Triangulation& triangulation, IsBorder&& isBorder) {
+    for (const auto& face : triangulation.all_face_handles()) face->info() = Side::Unknown;
+    std::vector<Triangulation::Face_handle> stack{triangulation.infinite_face()};
+    stack.back()->info() = Side::Outside;
+    while (!stack.empty()) {
+        const auto face = stack.back();
+        stack.pop_back();
+        for (int edge = 0; edge < 3; ++edge) {
+            const auto next = face->neighbor(edge);
+            if (next->info() != Side::Unknown) continue;
+            const bool crossed = isBorder(face, edge);
+            next->info() = (face->info() == Side::Inside) != crossed ? Side::Inside : Side::Outside;
+            stack.push_back(next);
+        }
+    }
+
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const auto& face : triangulation.finite_face_handles()) {
+        if (face->info() != Side::Inside) continue;
+        triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    }
+    return triangles;
+}
 
 } // namespace
 
@@ -45,7 +74,6 @@ triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
         return std::nullopt;
     }
 
-    // Flood from outside: a face is inside if the walk from the infinite face entered through the border.
     // Constraints inside do not count: only edges between consecutive border points, or parts of them, do.
     const auto isBorder = [&](const Triangulation::Face_handle& face, int edge) {
         if (!face->is_constrained(edge)) return false;
@@ -55,26 +83,42 @@ triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
         const std::size_t gap = a > b ? a - b : b - a;
         return gap == 1 || gap == borderCount - 1;
     };
-    for (const auto& face : triangulation.all_face_handles()) face->info() = Side::Unknown;
-    std::vector<Triangulation::Face_handle> stack{triangulation.infinite_face()};
-    stack.back()->info() = Side::Outside;
-    while (!stack.empty()) {
-        const auto face = stack.back();
-        stack.pop_back();
-        for (int edge = 0; edge < 3; ++edge) {
-            const auto next = face->neighbor(edge);
-            if (next->info() != Side::Unknown) continue;
-            const bool crossed = isBorder(face, edge);
-            next->info() = (face->info() == Side::Inside) != crossed ? Side::Inside : Side::Outside;
-            stack.push_back(next);
-        }
-    }
+    return trianglesInside(triangulation, isBorder);
+}
 
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (const auto& face : triangulation.finite_face_handles()) {
-        if (face->info() != Side::Inside) continue;
-        triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::span<const glm::dvec2> points,
+                                                                          std::span<const std::size_t> loopSizes) {
+    Triangulation triangulation;
+    std::vector<std::uint32_t> first(points.size()); // of the points at the same place
+    std::vector<Triangulation::Vertex_handle> vertices(points.size());
+    Triangulation::Face_handle hint;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::size_t before = triangulation.number_of_vertices();
+        vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
+        if (triangulation.number_of_vertices() != before) vertices[i]->info() = static_cast<std::uint32_t>(i);
+        first[i] = vertices[i]->info();
+        hint = vertices[i]->face();
     }
+    if (triangulation.dimension() < 2) return std::nullopt;
+
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> isBorder; // edges that were given an odd number of times
+    std::size_t begin = 0;
+    for (const std::size_t size : loopSizes) {
+        for (std::size_t k = 0; k < size; ++k) {
+            const auto edge = std::minmax(first[begin + k], first[begin + (k + 1) % size]);
+            if (edge.first != edge.second) isBorder[edge] ^= true;
+        }
+        begin += size;
+    }
+    try {
+        for (const auto& [edge, odd] : isBorder)
+            if (odd) triangulation.insert_constraint(vertices[edge.first], vertices[edge.second]);
+    } catch (const Triangulation::Intersection_of_constraints_exception&) {
+        return std::nullopt;
+    }
+    auto triangles =
+        trianglesInside(triangulation, [](const auto& face, int edge) { return face->is_constrained(edge); });
+    if (triangles.empty()) return std::nullopt;
     return triangles;
 }
 
