@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes the scenes of this folder: data/generate.py [FOLDER] (default: the folder of this file).
 
-Running it again gives the same bytes. Python's standard library only. Lengths are metres, y is up where there is an up.
+Running it again gives the same bytes. (classic_room.mgf and what it includes are written by hand: they show what only MGF
+can say.) Python's standard library only. Lengths are metres, y is up where there is an up.
 Faces are counter-clockwise seen from their front, which is the side that reflects and emits:
 rooms face inwards, objects face outwards and are closed.
 """
@@ -9,7 +10,7 @@ import math
 import sys
 from pathlib import Path
 
-from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_obj
+from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_mgf, write_obj
 
 # ---- Shapes
 
@@ -234,16 +235,18 @@ def table_room():
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
-    return [(cornell_box(), both), (furnace_box(), both), (table_room(), both),
-            *((case, ("obj",)) for case in analytic_cases())]
+    return [(cornell_box(), (*both, "mgf")), (furnace_box(), both), (table_room(), (*both, "mgf")),
+            *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
+
+
+WRITERS = {"gltf": write_gltf, "obj": write_obj, "mgf": write_mgf}
 
 
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
-    writers = {"gltf": write_gltf, "obj": write_obj}
     for scene, formats in scenes():
         for file_format in formats:
-            writers[file_format](scene, folder)
+            WRITERS[file_format](scene, folder)
 
 
 if __name__ == "__main__":
