@@ -15,7 +15,8 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     if (extension == ".obj") return readObj(path, options);
     if (extension == ".gltf" || extension == ".glb") return readGltf(path, options);
-    throw InputError(fmt::format("{}: found the extension {}, allowed are .obj, .gltf and .glb", path.string(),
+    if (extension == ".mgf") return readMgf(path, options);
+    throw InputError(fmt::format("{}: found the extension {}, allowed are .obj, .gltf, .glb and .mgf", path.string(),
                                  inQuotes(path.extension().string())));
 }
 

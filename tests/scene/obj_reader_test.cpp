@@ -225,7 +225,7 @@ TEST_F(ObjReader, RejectsWhatIsNotAReadableFile) {
     expectInputError(folder.path() / "none.obj", "none.obj: no such file");
     std::filesystem::create_directory(folder.path() / "folder.obj");
     expectInputError(folder.path() / "folder.obj", "folder.obj: found a folder");
-    expectInputError(folder.write("scene.fbx", "x"), "allowed are .obj, .gltf and .glb");
+    expectInputError(folder.write("scene.fbx", "x"), "allowed are .obj, .gltf, .glb");
     expectInputError(folder.write("scene", "x"), "found the extension \"\"");
 }
 
