@@ -33,11 +33,17 @@ CLI::Validator between(double lowest, double highest) {
 } // namespace
 
 void addSceneArguments(CLI::App& command, SceneArguments& a) {
-    command.add_option("scene", a.path, "Scene: .gltf, .glb, .obj, .ply or .stl")->required()->type_name("SCENE");
+    command.add_option("scene", a.path, "Scene: .gltf, .glb, .obj, .ply, .stl or .mgf")->required()->type_name("SCENE");
     command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
         ->type_name("METRES")
         ->group("Scene");
     command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
+    command
+        .add_option("--curve-segments", a.curveSegments,
+                    "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]")
+        ->type_name("N")
+        ->check(between(4.0, 1024.0))
+        ->group("Scene");
     command.add_option("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr")
         ->type_name("MATERIAL=r,g,b")
         ->group("Scene");
@@ -177,7 +183,11 @@ void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, c
 ReadResult readScene(const SceneArguments& a) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
+    ReadOptions options;
+    options.metresPerUnit = a.unit.value_or(1.0);
+    options.twoSided = a.twoSided;
+    options.curveSegments = a.curveSegments;
+    ReadResult result = readScene(a.path, options);
     overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
                       [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
     overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,

@@ -20,6 +20,7 @@ struct SceneArguments {
     std::filesystem::path path;
     std::optional<double> unit;
     bool twoSided = false;
+    int curveSegments = ReadOptions{}.curveSegments;
     std::vector<std::string> emit;        //!< MATERIAL=r,g,b
     std::vector<std::string> reflectance; //!< MATERIAL=r,g,b
 };

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/whole_file.h"
 #include "scene/input_file.h"
+#include "scene/mgf_file.h"
 #include "scene/obj_lines.h"
 
 #include <fmt/format.h>
@@ -30,6 +31,7 @@ bool sameFile(const fs::path& a, const fs::path& b) {
 
 std::vector<fs::path> filesOfScene(const fs::path& scene) {
     std::vector<fs::path> files{scene};
+    if (isMgf(scene)) return filesOfMgf(scene);
     if (formatOf(scene) != BakedFormat::Obj) return files;
     const std::string text = readInputFile(scene);
     ObjLines lines(text);

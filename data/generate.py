@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes the scenes of this folder: data/generate.py [FOLDER] (default: the folder of this file).
 
-Running it again gives the same bytes. Python's standard library only. Lengths are metres, y is up where there is an up.
+Running it again gives the same bytes. (classic_room.mgf and what it includes are written by hand: they show what only MGF
+can say.) Python's standard library only. Lengths are metres, y is up where there is an up.
 Faces are counter-clockwise seen from their front, which is the side that reflects and emits:
 rooms face inwards, objects face outwards and are closed.
 """
@@ -10,9 +11,9 @@ import sys
 from pathlib import Path
 
 from polygon_files import write_ply, write_stl
-from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_obj
+from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_mgf, write_obj
 
-WRITERS = {"gltf": write_gltf, "obj": write_obj, "ply": write_ply, "stl": write_stl}
+WRITERS = {"gltf": write_gltf, "obj": write_obj, "ply": write_ply, "stl": write_stl, "mgf": write_mgf}
 
 # ---- Shapes
 
@@ -237,8 +238,8 @@ def table_room():
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
-    return [(cornell_box(), both), (furnace_box(), (*both, "ply", "stl")), (table_room(), both),
-            *((case, ("obj",)) for case in analytic_cases())]
+    return [(cornell_box(), (*both, "mgf")), (furnace_box(), (*both, "ply", "stl")), (table_room(), (*both, "mgf")),
+            *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
 
 
 def main():

@@ -1,4 +1,4 @@
-"""What a scene of data/generate.py is made of, and how it is written as OBJ and as glTF."""
+"""What a scene of data/generate.py is made of, and how it is written as OBJ, as glTF and as MGF."""
 import base64
 import json
 import math
@@ -81,6 +81,72 @@ def write_obj(scene, folder):
         lines += [f"newmtl {name}"]
         lines += [f"{key} " + " ".join(map(number, value)) for key, value in (("Kd", material.kd), ("Ke", material.ke))]
     (folder / f"{scene.name}.mtl").write_text("\n".join(lines) + "\n")
+
+
+# ---- MGF: colours as CIE chromaticities and luminances. Its white, the equal-energy white E, stands for R = G = B, so that
+# colours are adapted from Rec. 709's white D65 to E by the Bradford transform.
+
+REC709 = ((.64, .33), (.30, .60), (.15, .06))
+WHITE_D65, WHITE_E = (.3127, .3290), (1 / 3, 1 / 3)
+LUMINANCE = (.2126, .7152, .0722)
+BRADFORD = ((.8951, .2664, -.1614), (-.7502, 1.7135, .0367), (.0389, -.0685, 1.0296))
+
+
+def times(matrix, vector):
+    return tuple(sum(a * b for a, b in zip(row, vector)) for row in matrix)
+
+
+def solved(matrix, right):
+    """The vector that the 3x3 matrix turns into `right`, by Cramer's rule."""
+    def determinant(m):
+        return sum(m[0][i] * (m[1][i - 2] * m[2][i - 1] - m[1][i - 1] * m[2][i - 2]) for i in range(3))
+    return tuple(determinant([[*row[:k], r, *row[k + 1:]] for row, r in zip(matrix, right)]) / determinant(matrix)
+                 for k in range(3))
+
+
+def xyz_of(x, y):
+    return (x / y, 1, (1 - x - y) / y)
+
+
+def chromaticity(rgb):
+    """CIE x, y of a linear Rec. 709 colour, relative to the white E."""
+    primaries = list(zip(*(xyz_of(*xy) for xy in REC709)))
+    shares = solved(primaries, xyz_of(*WHITE_D65))
+    cones = times(BRADFORD, times(primaries, [share * c for share, c in zip(shares, rgb)]))
+    d65, e = (times(BRADFORD, xyz_of(*white)) for white in (WHITE_D65, WHITE_E))
+    xyz = solved(BRADFORD, [c * to / of for c, to, of in zip(cones, e, d65)])
+    return xyz[0] / sum(xyz), xyz[1] / sum(xyz)
+
+
+def mgf_colour(keyword, rgb, factor=1):
+    """The colour context, and the entity that uses it."""
+    luminance = sum(weight * c for weight, c in zip(LUMINANCE, rgb))
+    if luminance == 0:
+        return [f"\t{keyword} 0"]
+    context = "\tc" if len(set(rgb)) == 1 else "\tc\n\t\tcxy " + " ".join(map(number, chromaticity(rgb)))
+    return [context, f"\t{keyword} {number(factor * luminance)}"]
+
+
+def write_mgf(scene, folder):
+    """One object per node, one vertex per corner of an object, one-sided materials."""
+    lines = [f"# {line}" for line in scene.comment]
+    for name, material in scene.materials.items():
+        lines += [f"m {name} =", "\tsides 1", *mgf_colour("rd", material.kd)]
+        if any(material.ke):
+            lines += mgf_colour("ed", material.ke, math.pi)  # emittance is pi times the radiance
+    for node in scene.nodes:
+        vertices, faces, current = {}, [], None
+        for material, points in (face for part in scene.meshes[node.mesh] for face in part):
+            if material != current:
+                faces.append(f"m {material}")
+                current = material
+            faces.append("f " + " ".join(vertices.setdefault(placed(node, p), f"{node.name}.{len(vertices)}")
+                                         for p in points))
+        lines.append(f"o {node.name}")
+        for point, name in vertices.items():
+            lines += [f"v {name} =", "\tp " + " ".join(map(number, point))]
+        lines += [*faces, "o"]
+    (folder / f"{scene.name}.mgf").write_text("\n".join(lines) + "\n")
 
 
 def gltf_material(name, material):

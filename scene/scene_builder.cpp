@@ -79,6 +79,26 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
     return result;
 }
 
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Of the first loop less all others, whichever way they turn.
+double areaWithHoles(std::span<const glm::dvec2> points, std::span<const std::size_t> loopSizes) {
+    double area = 0.0;
+    for (std::size_t loop = 0, begin = 0; loop < loopSizes.size(); begin += loopSizes[loop++]) {
+        const auto corners = points.subspan(begin, loopSizes[loop]);
+        double twice = 0.0;
+        for (std::size_t k = 0; k < corners.size(); ++k) twice += cross(corners[k], corners[(k + 1) % corners.size()]);
+        area += (loop == 0 ? 0.5 : -0.5) * std::abs(twice);
+    }
+    return area;
+}
+
+double areaOf(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const glm::dvec2> points) {
+    double twice = 0.0;
+    for (const auto& [a, b, c] : triangles) twice += cross(points[b] - points[a], points[c] - points[a]);
+    return 0.5 * twice;
+}
+
 } // namespace
 
 SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
@@ -290,6 +310,38 @@ bool SceneBuilder::addSplit() {
     if (!kept) return false;
     ++result_.report.splitPolygons;
     if (fan) ++fans_;
+    return true;
+}
+
+bool SceneBuilder::addPolygonWithHoles(std::span<const std::uint32_t> vertices, std::span<const std::size_t> loopSizes,
+                                       std::uint32_t material, std::uint32_t node) {
+    const std::span<const std::uint32_t> border = vertices.first(loopSizes.front());
+    std::vector<glm::dvec3> points;
+    for (const std::uint32_t vertex : vertices) points.emplace_back(result_.scene.positions[vertex]);
+    const glm::dvec3 normal = newellNormal(std::span(points).first(border.size()));
+    const double size = glm::length(normal);
+    if (!(size > 0.0) || !std::isfinite(size)) {
+        addPolygon(border, material, node); // which counts it as what it is
+        return true;
+    }
+
+    const std::vector<glm::dvec2> plane = projected(points, normal / size);
+    const auto triangles = triangulateLoops(plane, loopSizes);
+    const double expected = areaWithHoles(plane, loopSizes);
+    constexpr double kRounding = 1e-6; // of the border's area; anything larger is a hole in the wrong place
+    if (!triangles || !(std::abs(areaOf(*triangles, plane) - expected) <= kRounding * 0.5 * size)) {
+        addPolygon(border, material, node);
+        return false;
+    }
+
+    ++result_.report.inputPolygons;
+    corners_.assign(vertices.begin(), vertices.end());
+    surface_.clear();
+    material_ = material;
+    node_ = node;
+    bool kept = false;
+    for (const auto& [a, b, c] : *triangles) kept |= addTriangle(a, b, c);
+    ++(kept ? result_.report.splitPolygons : result_.report.degeneratePolygons);
     return true;
 }
 

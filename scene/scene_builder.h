@@ -70,6 +70,15 @@ public:
     void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,
                     std::span<const CornerSurface> surface);
 
+    /// Adds a planar polygon with holes: the corners of the border (front counter-clockwise) and of each hole, one loop
+    /// after the other, `loopSizes` many each. A loop may also take in holes by seams, edges that it goes there and back.
+    /// False if loops cross or lie outside the border, so that the border was filled instead.
+    bool addPolygonWithHoles(std::span<const std::uint32_t> vertices, std::span<const std::size_t> loopSizes,
+                             std::uint32_t material, std::uint32_t node);
+
+    /// Polygons added so far, after splitting.
+    std::size_t polygonCount() const { return result_.scene.polygons.size(); }
+
     /// Adds a line to the report.
     void warn(const std::string& text);
     /// Adds a line to the report, or throws it as InputError under `strict`: for what the scene names but does not have.

@@ -18,7 +18,7 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".obj", readObj}, {".gltf", readGltf}, {".glb", readGltf}, {".ply", readPly}, {".stl", readStl},
+    {".obj", readObj}, {".gltf", readGltf}, {".glb", readGltf}, {".ply", readPly}, {".stl", readStl}, {".mgf", readMgf},
 };
 
 } // namespace

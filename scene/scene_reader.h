@@ -16,6 +16,7 @@ struct ReadOptions {
     bool strict = false;            //!< what would be replaced with a warning (a missing image) is an InputError
     bool allowOutsideFiles = false; //!< a scene may name files outside its own folder
     Progress* progress = nullptr;   //!< of huge files
+    int curveSegments = 24;         //!< of MGF: straight pieces of a full circle, even, 4 to 1024
 };
 
 /// What a reader had to leave out or change.
