@@ -1,7 +1,9 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/targets.h"
+#include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
 #include "meshing/prepare.h"
@@ -142,9 +144,11 @@ Json infoReport(const InfoArguments& a, const ReadResult& read, const SceneFacts
 }
 
 ExitCode info(const InfoArguments& a) {
-    checkTargets(std::array{a.run.json}, filesOfScene(a.scene.path));
-    const ReadResult read = readScene(a.scene);
-    for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
+    checkTargets(std::array{a.run.json}, inputFiles(a.scene));
+    TerminalProgress progress(a.run.quiet);
+    const InterruptGuard interrupt(progress);
+    const ReadResult read = readScene(a.scene, &progress);
+    logReport(a.run, read.report);
     const SceneFacts facts = gather(read.scene);
     if (!a.run.json.empty()) writeJson(infoReport(a, read, facts), a.run.json);
     if (!a.run.quiet) print(a, read, facts);

@@ -5,6 +5,7 @@
 #include "core/whole_file.h"
 #include "scene/input_file.h"
 #include "scene/obj_lines.h"
+#include "scene/overrides_file.h"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,12 @@ std::vector<fs::path> filesOfScene(const fs::path& scene) {
         for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest))
             files.push_back(scene.parent_path() / word);
     }
+    return files;
+}
+
+std::vector<fs::path> inputFiles(const SceneArguments& arguments) {
+    std::vector<fs::path> files = filesOfScene(arguments.path);
+    files.push_back(arguments.overrides.empty() ? overridesFileBeside(arguments.path) : arguments.overrides);
     return files;
 }
 

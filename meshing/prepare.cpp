@@ -73,24 +73,27 @@ Corners coincidenceKey(const Polygon& polygon, bool& reversed) {
 void mergeCoincident(Scene& scene, PrepareReport& counts) {
     struct Entry {
         Corners key;
+        bool occluder; ///< comes after the others: these are in the way as well
         std::uint32_t polygon;
         bool reversed;
     };
     std::vector<Entry> entries;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        Entry entry{{}, i, false};
+        Entry entry{{}, isOccluder(scene, scene.polygons[i]), i, false};
         entry.key = coincidenceKey(scene.polygons[i], entry.reversed);
         entries.push_back(entry);
     }
-    std::sort(entries.begin(), entries.end(),
-              [](const Entry& a, const Entry& b) { return std::tie(a.key, a.polygon) < std::tie(b.key, b.polygon); });
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return std::tie(a.key, a.occluder, a.polygon) < std::tie(b.key, b.occluder, b.polygon);
+    });
     std::vector<bool> dropped(scene.polygons.size(), false);
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
         Polygon& kept = scene.polygons[entries[begin].polygon];
         for (end = begin + 1; end < entries.size() && entries[end].key == entries[begin].key; ++end) {
             const Polygon& other = scene.polygons[entries[end].polygon];
             dropped[entries[end].polygon] = true;
-            if (entries[end].reversed == entries[begin].reversed || kept.backMaterial != kNone) {
+            if (entries[end].occluder || entries[end].reversed == entries[begin].reversed ||
+                kept.backMaterial != kNone) {
                 ++counts.duplicatePolygons;
             } else {
                 kept.backMaterial = other.material;

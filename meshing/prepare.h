@@ -26,7 +26,7 @@ struct PrepareReport {
 float weldTolerance(const Scene& scene);
 
 /// The scene as meshing and ray casting use it: equal vertices welded, unused ones removed, polygons that vanish dropped,
-/// polygons on the same vertices merged (a ray must not choose between them), triangle pairs joined. Every polygon knows
+/// polygons on the same vertices merged (a ray must not choose between them; others win over occluders), triangle pairs joined. Every polygon knows
 /// the material of its back. Polygons stay in the file's order. After the vertices of the polygons, `positions` holds the
 /// points where edges cross, which meshing inserts into these edges.
 Scene prepareScene(const Scene& scene, const PrepareOptions& options = {}, PrepareReport* report = nullptr);

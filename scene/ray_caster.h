@@ -36,7 +36,8 @@ struct alignas(64) RayPacket {
 /// A quad's is affine on each of the triangles (v0, v1, v3), where u + v <= 1, and (v2, v3, v1).
 glm::vec3 polygonPoint(const Scene& scene, std::uint32_t polygon, float u, float v);
 
-/// Finds what rays hit first among the source polygons of a scene. Thread-safe.
+/// Finds what rays hit first among the source polygons of a scene. Occluders are met on their back, from wherever they are
+/// seen. Thread-safe.
 class RayCaster {
 public:
     /// `scene` must outlive the caster. Every polygon must be finite and have an area.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "scene/overrides.h"
 #include "scene/scene.h"
 
 #include <cstddef>
@@ -18,6 +19,14 @@ struct ReadOptions {
     Progress* progress = nullptr;   //!< of huge files
 };
 
+/// What a user changed of a scene, and how.
+struct AppliedOverrides {
+    std::filesystem::path file; //!< that was used, empty if none
+    double metresPerUnit = 1.0;
+    bool twoSided = false;
+    SceneOverrides changes; //!< in the order in which they were made
+};
+
 /// What a reader had to leave out or change.
 struct ReadReport {
     std::size_t inputPolygons = 0;      //!< polygons in the file, before any of the below
@@ -25,6 +34,7 @@ struct ReadReport {
     std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
     std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
     std::vector<std::string> warnings;  //!< one line each, with the file's name
+    AppliedOverrides overrides;         //!< made after reading
 };
 
 struct ReadResult {
