@@ -129,7 +129,7 @@ void collectWarnings(BakedScene& result) {
     if (result.rows.backFaceFraction > kBackFaceWarning)
         warn(fmt::format(
             "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
-            "or make surfaces two-sided with --two-sided",
+            "or make it two-sided (--two-sided, or \"two_sided\" in an overrides file)",
             100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
     const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);

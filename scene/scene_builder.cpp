@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/triangulation.h"
 #include "scene/input_file.h"
+#include "scene/merge_warnings.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -97,8 +98,8 @@ std::uint32_t SceneBuilder::addMaterial(Material material) {
     const Rgb emittedRadiance = glm::max(material.emittedRadiance, 0.0F);
     std::string changes;
     if (reflectance != material.reflectance)
-        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {}", material.reflectance.x,
-                              material.reflectance.y, material.reflectance.z, kMaxReflectance);
+        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {} (no surface returns all light)",
+                              material.reflectance.x, material.reflectance.y, material.reflectance.z, kMaxReflectance);
     if (emittedRadiance != material.emittedRadiance)
         changes += fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
                                material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
@@ -282,6 +283,7 @@ ReadResult SceneBuilder::finish() {
     }
     if (fans_ > 0)
         warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
+    result_.report.warnings = mergeWarnings(result_.report.warnings);
     return std::exchange(result_, {});
 }
 
