@@ -50,6 +50,7 @@ std::vector<std::uint32_t> addGltfMaterials(const std::string& file, const tinyg
         const Rgb baseColour = checkedColour(file, pbrPlace + "/baseColorFactor", pbr.baseColorFactor);
         const float metallic = checkedNumber(file, pbrPlace + "/metallicFactor", pbr.metallicFactor, 1.0);
         material.reflectance = baseColour * (1.0F - metallic);
+        material.diffusePartOnly = metallic > 0.5F || source.extensions.contains("KHR_materials_transmission");
 
         const double strength = emissiveStrength(source);
         checkedNumber(file, place + "/extensions/KHR_materials_emissive_strength/emissiveStrength", strength);

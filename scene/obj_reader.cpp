@@ -62,6 +62,7 @@ void addLibrary(SceneBuilder& builder, const std::filesystem::path& path,
         material.name = source.name;
         material.reflectance = Rgb(source.diffuse[0], source.diffuse[1], source.diffuse[2]);
         material.emittedRadiance = Rgb(source.emission[0], source.emission[1], source.emission[2]);
+        material.diffusePartOnly = checked.diffusePartOnly.contains(source.name);
         materials.emplace(source.name, builder.addMaterial(std::move(material)));
     }
 }

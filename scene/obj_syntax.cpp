@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -160,7 +161,20 @@ private:
             (line.keyword == "Kd" ? hasKd_ : hasKe_) = true;
         } else if (line.keyword == "map_Kd" || line.keyword == "map_Ke") {
             (line.keyword == "map_Kd" ? hasMapKd_ : hasMapKe_) = true;
+        } else {
+            noteBeyondDiffuse(line);
         }
+    }
+
+    /// What is not read but worth telling. Numbers that make no sense are not looked at.
+    void noteBeyondDiffuse(const ObjLine& line) {
+        std::string_view rest = line.rest;
+        const double value = parseNumber(nextWord(rest)).value_or(0.0);
+        if (line.keyword == "illum")
+            beyondDiffuse_ |= value >= 3.0 && value <= 9.0 && value != 8.0; // 8: shadows only
+        else if (line.keyword == "Ks")
+            for (std::string_view word = line.rest, one = nextWord(word); !one.empty(); one = nextWord(word))
+                specular_ = std::max(specular_, parseNumber(one).value_or(0.0));
     }
 
     void checkColour(const ObjLine& line) {
@@ -177,6 +191,7 @@ private:
             if (!number || !(std::abs(*number) <= double{std::numeric_limits<float>::max()}))
                 failAt(file_, line.number, word, fmt::format("a finite number after {}", line.keyword));
             numbers.push_back(word);
+            if (line.keyword == "Kd") diffuse_ = std::max(diffuse_, *number);
         }
         if (numbers.size() == 1) {
             writeColour(line.keyword, numbers[0]);
@@ -200,7 +215,10 @@ private:
             } else if (!hasKd_ && !hasKe_) {
                 warn("has no Kd: its reflectance is 0");
             }
+            if (beyondDiffuse_ || specular_ > diffuse_) result_.diffusePartOnly.insert(name_);
         }
+        beyondDiffuse_ = false;
+        diffuse_ = specular_ = 0.0;
         hasKd_ = hasKe_ = hasMapKd_ = hasMapKe_ = false;
     }
 
@@ -212,6 +230,8 @@ private:
     MtlText result_;
     std::string name_; //!< of the material at work; empty before the first
     bool hasKd_ = false, hasKe_ = false, hasMapKd_ = false, hasMapKe_ = false;
+    bool beyondDiffuse_ = false;
+    double diffuse_ = 0.0, specular_ = 0.0; //!< the largest channel
 };
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,8 @@ ObjText checkObj(const std::string& file, std::string_view text);
 /// The same for an MTL file: only `newmtl`, `Kd` and `Ke`, each colour with three numbers.
 struct MtlText {
     std::string statements;
-    std::vector<std::string> warnings; //!< one line each, without the file's name
+    std::set<std::string> diffusePartOnly; //!< materials with a mirror, glass, or more gloss than diffuse reflection
+    std::vector<std::string> warnings;     //!< one line each, without the file's name
 };
 MtlText checkMtl(const std::string& file, std::string_view text);
 

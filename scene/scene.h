@@ -41,6 +41,7 @@ struct Material {
     /// Only blocks light, is black on both sides and not part of what is baked: its polygons have no patches, their edges
     /// still divide what they touch.
     bool occluder = false;
+    bool diffusePartOnly = false; //!< the file gives it gloss, a mirror or glass as well, which is left out
 
     TextureUse reflectanceTexture{};
     TextureUse emissionTexture{};

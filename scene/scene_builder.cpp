@@ -136,6 +136,7 @@ std::uint32_t SceneBuilder::addTextureOnce(const std::string& key, const std::st
     try {
         entry->second = addTexture(read());
     } catch (const InputError& error) {
+        ++result_.report.missingImages;
         warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
     }
     return entry->second;

@@ -33,6 +33,7 @@ struct ReadReport {
     std::size_t nonFinitePolygons = 0;  //!< dropped: a coordinate is NaN or infinite
     std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
     std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
+    std::size_t missingImages = 0;      //!< could not be read, see the warnings
     std::vector<std::string> warnings;  //!< one line each, with the file's name
     AppliedOverrides overrides;         //!< made after reading
 };
