@@ -55,8 +55,14 @@ int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t
     return chosen;
 }
 
+/// What the rays meet that end on backs.
+struct BacksMet {
+    std::string material;  ///< the most frequent one; empty if there is none
+    double unwanted = 1.0; ///< share of these rays that do not end on occluders
+};
+
 /// The material whose black back is met most by rays from the patches that meet most of them.
-std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
+BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
@@ -67,6 +73,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     patches.resize(std::min<std::size_t>(patches.size(), 200));
     const Scene& scene = rays.scene();
     std::vector<double> met(scene.materials.size(), 0.0);
+    double occluded = 0.0;
     constexpr int kResolution = 16;
     RayPacket packet;
     const Hemicube hemicube(mesh, rays, {.resolution = kResolution, .randomRotation = false});
@@ -78,16 +85,19 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
                     rays.closest(hemicube.viewpoint(patch).origin, packet);
                     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
-                        const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
-                        if (scene.polygons[packet.polygon[lane]].backMaterial == kNone)
-                            met[material] += static_cast<double>(mesh.area[patch]);
+                        const Polygon& polygon = scene.polygons[packet.polygon[lane]];
+                        if (polygon.backMaterial == kNone)
+                            (isOccluder(scene, polygon) ? occluded : met[polygon.material]) +=
+                                static_cast<double>(mesh.area[patch]);
                     }
                 }
             }
         }
     }
     const auto most = std::max_element(met.begin(), met.end());
-    return *most > 0.0 ? scene.materials[static_cast<std::size_t>(most - met.begin())].name : std::string();
+    if (!(*most > 0.0)) return {{}, 0.0};
+    const double onBacks = std::accumulate(met.begin(), met.end(), 0.0);
+    return {scene.materials[static_cast<std::size_t>(most - met.begin())].name, onBacks / (onBacks + occluded)};
 }
 
 RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
@@ -104,7 +114,11 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     quality.entries = matrix.entryCount();
     quality.bytes = matrix.bytes();
     quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
-    if (quality.backFaceFraction > kBackFaceWarning) quality.backFaceMaterial = mostMetBack(mesh, rays, matrix);
+    if (quality.backFaceFraction > kBackFaceWarning) {
+        const BacksMet met = mostMetBack(mesh, rays, matrix);
+        quality.backFaceFraction *= met.unwanted;
+        quality.backFaceMaterial = met.material;
+    }
     return quality;
 }
 
@@ -113,7 +127,7 @@ void collectWarnings(BakedScene& result) {
     if (result.rows.backFaceFraction > kBackFaceWarning)
         warn(fmt::format(
             "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
-            "or make surfaces two-sided with --two-sided",
+            "or make it two-sided (--two-sided, or \"two_sided\" in an overrides file)",
             100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
     const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);

@@ -34,9 +34,10 @@ struct BakeSeconds {
 /// How the computed rows keep their identities.
 struct RowQuality {
     double largestClosureError = 0.0; //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
-    double backFaceFraction = 0.0;    //!< of the rays from patches that can receive light, area-weighted
-    std::string backFaceMaterial;     //!< whose back they meet most often; empty if they meet none
-    std::size_t entries = 0;          //!< of the matrix
+    double backFaceFraction =
+        0.0; //!< of the rays from patches that can receive light, area-weighted; occluders are none
+    std::string backFaceMaterial; //!< whose back they meet most often; empty if they meet none
+    std::size_t entries = 0;      //!< of the matrix
     std::size_t bytes = 0;
 };
 

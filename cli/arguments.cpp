@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/terminal_text.h"
+#include "cli/validators.h"
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -11,46 +12,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 namespace lambert {
-
-namespace {
-
-/// Like CLI::Range, but NaN is outside too, and so is the negative number that an unsigned option would wrap
-/// around.
-CLI::Validator between(double lowest, double highest) {
-    return {[=](const std::string& text) {
-                double value = 0.0;
-                if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
-                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest, highest);
-                return std::string();
-            },
-            "", ""};
-}
-
-} // namespace
-
-void addSceneArguments(CLI::App& command, SceneArguments& a) {
-    command.add_option("scene", a.path, "Scene: .gltf, .glb, .obj, .ply, .stl or .mgf")->required()->type_name("SCENE");
-    command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
-        ->type_name("METRES")
-        ->group("Scene");
-    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
-    command
-        .add_option("--curve-segments", a.curveSegments,
-                    "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]")
-        ->type_name("N")
-        ->check(between(4.0, 1024.0))
-        ->group("Scene");
-    command.add_option("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr")
-        ->type_name("MATERIAL=r,g,b")
-        ->group("Scene");
-    command.add_option("--reflectance", a.reflectance, "Diffuse reflectance of a material, 0 to 0.99")
-        ->type_name("MATERIAL=r,g,b")
-        ->group("Scene");
-}
 
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
     auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
@@ -149,52 +113,6 @@ glm::vec3 parseVector(const std::string& text, const std::string& option) {
     return result;
 }
 
-namespace {
-
-/// Materials named on the command line, with their values.
-void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, const std::string& option, float largest,
-                       const std::function<void(Material&, const Rgb&)>& apply) {
-    for (const std::string& setting : settings) {
-        const std::size_t separator = setting.rfind('=');
-        if (separator == std::string::npos)
-            throw UsageError(fmt::format("{}: found \"{}\", expected MATERIAL=r,g,b", option, setting));
-        const std::string name = setting.substr(0, separator);
-        const Rgb value = parseVector(setting.substr(separator + 1), option);
-        if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
-            throw UsageError(
-                fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
-        bool found = false;
-        for (Material& material : scene.materials) {
-            if (material.name != name) continue;
-            apply(material, value);
-            found = true;
-        }
-        if (!found) {
-            std::vector<std::string> names;
-            for (const Material& material : scene.materials) names.push_back(material.name);
-            throw UsageError(
-                fmt::format("{}: the scene has no material \"{}\", but {}", option, name, fmt::join(names, ", ")));
-        }
-    }
-}
-
-} // namespace
-
-ReadResult readScene(const SceneArguments& a) {
-    if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
-        throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    ReadOptions options;
-    options.metresPerUnit = a.unit.value_or(1.0);
-    options.twoSided = a.twoSided;
-    options.curveSegments = a.curveSegments;
-    ReadResult result = readScene(a.path, options);
-    overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
-                      [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
-    overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,
-                      [](Material& m, const Rgb& value) { m.reflectance = value; });
-    return result;
-}
-
 BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
     options.mesh.patchLength = a.patchLength;
@@ -279,5 +197,12 @@ void logLine(const RunArguments& run, const std::string& line) {
 }
 
 void warnLine(const std::string& line) { writeLog("warning: " + line + "\n"); }
+
+void logReport(const RunArguments& run, const ReadReport& report) {
+    if (!report.overrides.file.empty())
+        logLine(run, oneLine(fmt::format("{}: changes the scene (--no-overrides ignores it)",
+                                         report.overrides.file.string())));
+    for (const std::string& warning : report.warnings) warnLine(oneLine(warning));
+}
 
 } // namespace lambert

@@ -2,6 +2,7 @@
 
 #include "baking/bake_scene.h"
 #include "baking/write_baked.h"
+#include "cli/scene_arguments.h"
 #include "rendering/camera_rays.h"
 #include "scene/scene_reader.h"
 
@@ -15,15 +16,6 @@
 namespace lambert {
 
 /// What the user typed, by topic. Every command adds the groups that apply to it.
-
-struct SceneArguments {
-    std::filesystem::path path;
-    std::optional<double> unit;
-    bool twoSided = false;
-    int curveSegments = ReadOptions{}.curveSegments;
-    std::vector<std::string> emit;        //!< MATERIAL=r,g,b
-    std::vector<std::string> reflectance; //!< MATERIAL=r,g,b
-};
 
 struct TransportArguments {
     std::optional<double> patchLength;
@@ -54,13 +46,9 @@ struct PictureArguments {
     int samples = 4;
 };
 
-void addSceneArguments(CLI::App& command, SceneArguments& arguments);
 void addTransportArguments(CLI::App& command, TransportArguments& arguments);
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addPictureArguments(CLI::App& command, PictureArguments& arguments);
-
-/// Reads the scene and applies --emit and --reflectance. Throws InputError, UsageError.
-ReadResult readScene(const SceneArguments& arguments);
 
 /// Throws UsageError.
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
@@ -89,5 +77,8 @@ void applyThreads(const RunArguments& run);
 /// Log lines on stderr, unless --quiet.
 void logLine(const RunArguments& run, const std::string& line);
 void warnLine(const std::string& line);
+
+/// Logs what a scene was changed by, and its warnings.
+void logReport(const RunArguments& run, const ReadReport& report);
 
 } // namespace lambert

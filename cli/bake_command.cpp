@@ -107,15 +107,15 @@ ExitCode bake(const BakeArguments& a) {
     checkPicture(a.picture);
     const BakeOptions options = bakeOptions(a.transport, a.run);
     const std::vector<std::filesystem::path> files = targetFiles(a, targets);
-    checkTargets(files, filesOfScene(a.scene.path));
+    checkTargets(files, inputFiles(a.scene));
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
 
     const Stopwatch reading;
-    ReadResult read = readScene(a.scene);
+    ReadResult read = readScene(a.scene, &progress);
     const double readSeconds = reading.seconds();
-    for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
+    logReport(a.run, read.report);
     checkCamera(a.picture, read.scene);
     progress.throwIfCancelled();
     logLine(a.run, fmt::format("{}: {} polygons, {} materials", a.scene.path.string(), read.scene.polygons.size(),

@@ -6,6 +6,7 @@
 #include "scene/input_file.h"
 #include "scene/mgf_file.h"
 #include "scene/obj_lines.h"
+#include "scene/overrides_file.h"
 
 #include <fmt/format.h>
 
@@ -42,6 +43,12 @@ std::vector<fs::path> filesOfScene(const fs::path& scene) {
         for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest))
             files.push_back(scene.parent_path() / word);
     }
+    return files;
+}
+
+std::vector<fs::path> inputFiles(const SceneArguments& arguments) {
+    std::vector<fs::path> files = filesOfScene(arguments.path);
+    files.push_back(arguments.overrides.empty() ? overridesFileBeside(arguments.path) : arguments.overrides);
     return files;
 }
 

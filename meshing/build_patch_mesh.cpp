@@ -49,6 +49,17 @@ public:
             addLocated(polygon, first);
     }
 
+    /// A polygon without patches, whose `border` is divided like that of any other.
+    void addOccluder(std::uint32_t polygon, const std::vector<std::uint32_t>& border) {
+        const Polygon& source = scene_.polygons[polygon];
+        mesh_.lookup.addGrid(scene_, source, static_cast<std::uint32_t>(mesh_.size()), 1, 1);
+        glm::vec3 centroid(0.0F);
+        for (int k = 0; k < source.size(); ++k) centroid += corner(scene_, source, k);
+        centroid /= static_cast<float>(source.size());
+        for (std::size_t k = 0; k < border.size(); ++k)
+            mesh_.occluderEdges.push_back({edgeKey(border[k], border[(k + 1) % border.size()]), centroid});
+    }
+
     void addFaces(std::uint32_t polygon, const std::vector<Corners>& faces) {
         const std::size_t first = mesh_.size();
         append(polygon, faces);
@@ -157,6 +168,10 @@ void dividePolygon(std::uint32_t index, const Scene& scene, const EdgeDivision& 
                    PatchMeshBuilder& builder, MeshReport& report) {
     const Polygon& polygon = scene.polygons[index];
     DividedBorder border(scene, polygon, division, contact);
+    if (isOccluder(scene, polygon)) {
+        builder.addOccluder(index, border.outline.border);
+        return;
+    }
     if (border.whole) {
         builder.addWhole(index);
         return;
@@ -203,16 +218,29 @@ PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector
 
 PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
     PatchMeshBuilder builder(scene, report);
-    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) builder.addWhole(i);
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        const Polygon& polygon = scene.polygons[i];
+        if (isOccluder(scene, polygon))
+            builder.addOccluder(i, {polygon.vertices.begin(), polygon.vertices.begin() + polygon.size()});
+        else
+            builder.addWhole(i);
+    }
     report.patchLength = kUnrefined;
     return builder.finish();
 }
 
 double totalArea(const Scene& scene) {
     return std::accumulate(scene.polygons.begin(), scene.polygons.end(), 0.0, [&](double sum, const Polygon& polygon) {
+        if (isOccluder(scene, polygon)) return sum;
         const double area = static_cast<double>(glm::length(areaVector(scene, polygon)));
         return sum + (polygon.backMaterial != kNone ? 2.0 * area : area);
     });
+}
+
+/// Polygons that will have patches.
+std::size_t litPolygons(const Scene& scene) {
+    return static_cast<std::size_t>(std::count_if(scene.polygons.begin(), scene.polygons.end(),
+                                                  [&](const Polygon& polygon) { return !isOccluder(scene, polygon); }));
 }
 
 /// The patches, with the material's constants for what is on them.
@@ -234,7 +262,7 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
     const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene)));
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
-    const auto polygons = static_cast<double>(scene.polygons.size());
+    const auto polygons = static_cast<double>(litPolygons(scene));
     // With more polygons than that, at least the large ones must not stay whole: no patch is larger than it would be
     // in a scene of large polygons.
     if (polygons >= wanted)

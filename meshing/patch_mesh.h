@@ -5,9 +5,16 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lambert {
+
+/// A piece of an occluder's border, divided as what it touches is.
+struct OccluderEdge {
+    std::pair<std::uint32_t, std::uint32_t> vertices; //!< into PatchMesh::positions, the smaller first
+    glm::vec3 centroid;                               //!< of the occluder, metres
+};
 
 /// A scene divided into patches, as flat arrays for the kernels. Patches are triangles or convex planar quads.
 ///
@@ -28,7 +35,9 @@ struct PatchMesh {
     std::vector<std::uint32_t> material; //!< #patches, into Scene::materials
     std::size_t frontCount = 0;
 
-    PatchLookup lookup; //!< from a ray's hit to the patch
+    std::vector<OccluderEdge> occluderEdges; //!< where light may change abruptly although no patch stands there
+
+    PatchLookup lookup; //!< from a ray's hit to the patch; not for occluders, which have none
 
     std::size_t size() const { return corners.size(); }
     bool isQuad(std::size_t patch) const { return corners[patch][3] != kNone; }

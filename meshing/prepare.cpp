@@ -119,14 +119,15 @@ Corners coincidenceKey(const Polygon& polygon, bool& reversed) {
 void mergeCoincident(Scene& scene, PrepareReport& counts) {
     struct Entry {
         Corners key;
+        bool occluder; ///< comes after the others: these are in the way as well
         bool holes;
         std::uint32_t polygon;
         bool reversed;
-        auto order() const { return std::tie(key, holes, polygon); }
+        auto order() const { return std::tie(key, occluder, holes, polygon); }
     };
     std::vector<Entry> entries;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        Entry entry{{}, hasHoles(scene, scene.polygons[i]), i, false};
+        Entry entry{{}, isOccluder(scene, scene.polygons[i]), hasHoles(scene, scene.polygons[i]), i, false};
         entry.key = coincidenceKey(scene.polygons[i], entry.reversed);
         entries.push_back(entry);
     }
@@ -137,7 +138,8 @@ void mergeCoincident(Scene& scene, PrepareReport& counts) {
         for (end = begin + 1; end < entries.size() && entries[end].key == entries[begin].key; ++end) {
             const Polygon& other = scene.polygons[entries[end].polygon];
             dropped[entries[end].polygon] = true;
-            if (entries[end].reversed == entries[begin].reversed || kept.backMaterial != kNone) {
+            if (entries[end].occluder || entries[end].reversed == entries[begin].reversed ||
+                kept.backMaterial != kNone) {
                 ++counts.duplicatePolygons;
             } else {
                 kept.backMaterial = other.material;

@@ -114,6 +114,13 @@ void store(const RTCRayHit16& rays, RayPacket& packet) {
     }
 }
 
+/// Occluders have two backs.
+void turnOccluders(const Scene& scene, RayPacket& packet) {
+    for (int lane = 0; lane < RayPacket::kSize; ++lane)
+        if (packet.polygon[lane] != kNone && isOccluder(scene, scene.polygons[packet.polygon[lane]]))
+            packet.facing[lane] = std::abs(packet.facing[lane]);
+}
+
 RTCRay embreeRay(const Ray& ray) {
     assert(isFinite(ray.origin) && isFinite(ray.direction)); // Debian's Embree aborts on such rays
     RTCRay result{};
@@ -134,6 +141,7 @@ struct RayCaster::Impl {
     const Scene* scene = nullptr;
     Bounds bounds;
     float largestCoordinate = 0.0F;
+    bool hasOccluders = false;
     RTCDevice device = nullptr;
     RTCScene embree = nullptr;
     std::array<PolygonSet, 2> sets; //!< by GeometryId
@@ -166,10 +174,11 @@ struct RayCaster::Impl {
         loadDirections(packet, rays);
         rtcIntersect16(packet.active, embree, &context, &rays);
         store(rays, packet);
-        if (!anyHoles()) return;
-        for (int lane = 0; lane < RayPacket::kSize; ++lane)
-            if (packet.polygon[lane] != kNone)
-                packet.polygon[lane] = polygonOf(rays.hit.geomID[lane], rays.hit.primID[lane]);
+        if (anyHoles())
+            for (int lane = 0; lane < RayPacket::kSize; ++lane)
+                if (packet.polygon[lane] != kNone)
+                    packet.polygon[lane] = polygonOf(rays.hit.geomID[lane], rays.hit.primID[lane]);
+        if (hasOccluders) turnOccluders(*scene, packet);
     }
 
     ~Impl() {
@@ -194,6 +203,8 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl_->bounds = boundsOf(scene);
     const glm::vec3 largest = glm::max(glm::abs(impl_->bounds.lower), glm::abs(impl_->bounds.upper));
     impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
+    impl_->hasOccluders = std::any_of(scene.polygons.begin(), scene.polygons.end(),
+                                      [&](const Polygon& polygon) { return isOccluder(scene, polygon); });
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr)
         throw SystemError(
@@ -220,8 +231,10 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    return Hit{impl_->polygonOf(query.hit.geomID, query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar,
-               glm::dot(ray.direction, normal) < 0.0F};
+    const std::uint32_t polygon = impl_->polygonOf(query.hit.geomID, query.hit.primID);
+    const bool front =
+        glm::dot(ray.direction, normal) < 0.0F && !isOccluder(*impl_->scene, impl_->scene->polygons[polygon]);
+    return Hit{polygon, query.hit.u, query.hit.v, query.ray.tfar, front};
 }
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {

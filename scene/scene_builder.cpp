@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/triangulation.h"
 #include "scene/input_file.h"
+#include "scene/merge_warnings.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -121,8 +122,8 @@ std::uint32_t SceneBuilder::addMaterial(Material material) {
     const Rgb emittedRadiance = glm::max(material.emittedRadiance, 0.0F);
     std::string changes;
     if (reflectance != material.reflectance)
-        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {}", material.reflectance.x,
-                              material.reflectance.y, material.reflectance.z, kMaxReflectance);
+        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {} (no surface returns all light)",
+                              material.reflectance.x, material.reflectance.y, material.reflectance.z, kMaxReflectance);
     if (emittedRadiance != material.emittedRadiance)
         changes += fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
                                material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
@@ -177,6 +178,7 @@ std::shared_ptr<const Texture> SceneBuilder::textureOrNull(const std::string& na
     try {
         return read();
     } catch (const InputError& error) {
+        ++result_.report.missingImages;
         warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
         return nullptr;
     }
@@ -355,6 +357,7 @@ ReadResult SceneBuilder::finish() {
     }
     if (fans_ > 0)
         warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
+    result_.report.warnings = mergeWarnings(result_.report.warnings);
     return std::exchange(result_, {});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "scene/overrides.h"
 #include "scene/scene.h"
 
 #include <cstddef>
@@ -19,13 +20,23 @@ struct ReadOptions {
     int curveSegments = 24;         //!< of MGF: straight pieces of a full circle, even, 4 to 1024
 };
 
+/// What a user changed of a scene, and how.
+struct AppliedOverrides {
+    std::filesystem::path file; //!< that was used, empty if none
+    double metresPerUnit = 1.0;
+    bool twoSided = false;
+    SceneOverrides changes; //!< in the order in which they were made
+};
+
 /// What a reader had to leave out or change.
 struct ReadReport {
     std::size_t inputPolygons = 0;      //!< polygons in the file, before any of the below
     std::size_t nonFinitePolygons = 0;  //!< dropped: a coordinate is NaN or infinite
     std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
     std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
+    std::size_t missingImages = 0;      //!< could not be read, see the warnings
     std::vector<std::string> warnings;  //!< one line each, with the file's name
+    AppliedOverrides overrides;         //!< made after reading
 };
 
 struct ReadResult {
