@@ -101,7 +101,8 @@ json parseJson(const std::string& file, std::string_view text) {
     }
 }
 
-/// A path from a URI: %20 becomes a space.
+} // namespace
+
 std::string decodedUri(std::string_view uri) {
     std::string result;
     for (std::size_t k = 0; k < uri.size(); ++k) {
@@ -116,6 +117,8 @@ std::string decodedUri(std::string_view uri) {
     }
     return result;
 }
+
+namespace {
 
 void replaceAll(std::string& text, std::string_view from, std::string_view to) {
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace tinygltf {
 class Model;
@@ -14,6 +15,9 @@ namespace lambert {
 /// (checkGltfMembers), buffer sizes. Images, animations, skins, extensions of the whole file and `extras` are
 /// left out. Throws InputError with the file and, for the JSON part, the path of the member.
 tinygltf::Model loadGltfModel(const std::filesystem::path& path);
+
+/// The path that a URI stands for: %20 becomes a space.
+std::string decodedUri(std::string_view uri);
 
 /// Throws the InputError "FILE: PATH: found ..., allowed ...".
 [[noreturn]] void failAtMember(const std::string& file, const std::string& member, const std::string& found,
