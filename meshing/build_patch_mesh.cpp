@@ -211,9 +211,10 @@ double totalArea(const Scene& scene) {
 
 } // namespace
 
-std::size_t defaultPatches(const Scene& scene) {
+std::size_t defaultPatches(const Scene& scene, double refinement) {
     const std::size_t polygons = scene.polygons.size();
-    return polygons + std::max<std::size_t>(5000, polygons / 4);
+    const auto added = static_cast<double>(std::max<std::size_t>(5000, polygons / 4));
+    return polygons + static_cast<std::size_t>(refinement * added);
 }
 
 PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
@@ -234,7 +235,7 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
                                          *options.patchLength, predicted, kMostPatches));
         return divide(scene, index, contacts, *options.patchLength, progress, counts);
     }
-    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene)));
+    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
     const auto polygons = static_cast<double>(scene.polygons.size());
