@@ -25,6 +25,7 @@ struct SceneArguments {
 };
 
 struct TransportArguments {
+    std::string quality = "normal";
     std::optional<double> patchLength;
     std::optional<std::size_t> patches;
     bool wholeContacts = false;
@@ -34,7 +35,7 @@ struct TransportArguments {
     std::string rotation = "random";
     double memoryLimit = 8.0 * 1073741824.0;
     std::string solver = "jacobi";
-    double tolerance = 1e-4;
+    std::optional<double> tolerance;
     int bounces = 0;
 };
 
@@ -54,6 +55,7 @@ struct PictureArguments {
 };
 
 void addSceneArguments(CLI::App& command, SceneArguments& arguments);
+void addSceneOptions(CLI::App& command, SceneArguments& arguments); ///< the same without the scene's path
 void addTransportArguments(CLI::App& command, TransportArguments& arguments);
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addPictureArguments(CLI::App& command, PictureArguments& arguments);
@@ -74,6 +76,9 @@ struct Picture {
 
 /// The picture's size and camera: the named one, the one by --eye, the scene's first, or a default one.
 Picture picture(const PictureArguments& arguments, const Scene& scene, const RayCaster& rays);
+
+/// Rays that the picture takes; 0 without one. Throws UsageError.
+double pictureRays(const PictureArguments& arguments);
 
 /// Check what can be checked of a picture before any work, and once the scene is read. Throw UsageError.
 void checkPicture(const PictureArguments& arguments);

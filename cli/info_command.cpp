@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_text.h"
 

@@ -8,7 +8,7 @@
 namespace lambert {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{256} << 20;
+constexpr std::size_t kBlock = std::size_t{64} << 20;
 
 TEST(PeakMemory, HoldsWhatWasUsedAndFreed) {
     const std::uint64_t before = peakMemoryBytes();
