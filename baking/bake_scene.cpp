@@ -12,8 +12,6 @@ namespace lambert {
 
 namespace {
 
-/// Bounds the first look at a large scene: a few minutes on two cores.
-constexpr double kMostRays = 1.3e9;
 constexpr double kBackFaceWarning = 0.01;
 /// A patch that sees more backs than this is inside something. (Not all backs: where solids touch, a ray may slip from the
 /// inside of one into the other.)
@@ -43,14 +41,14 @@ double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int reso
     return static_cast<double>(entries) / static_cast<double>(samples);
 }
 
-int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t memoryLimit) {
+int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, const BakeOptions& options) {
     const auto count = static_cast<double>(mesh.size());
     int chosen = 0;
-    for (int resolution = 128; resolution >= 16; resolution -= 8) {
+    for (int resolution = options.largestResolution; resolution >= 16; resolution -= 8) {
         chosen = resolution;
-        if (3.0 * resolution * resolution * count > kMostRays) continue;
+        if (3.0 * resolution * resolution * count > options.mostRays) continue;
         const double bytes = count * bytesPerFactor(MatrixStorage::Float) * pilotEntriesPerRow(mesh, rays, resolution);
-        if (bytes <= static_cast<double>(memoryLimit)) break;
+        if (bytes <= static_cast<double>(options.memoryLimit)) break;
     }
     return chosen;
 }
@@ -138,10 +136,9 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
-BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
     requireLight(scene);
-    BakedScene result;
-    Stopwatch watch;
+    MeshedScene result;
     const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
     progress.begin("mesh", 0);
     result.scene = std::make_shared<Scene>(prepareScene(
@@ -151,10 +148,15 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
     progress.end();
+    result.resolution = options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options);
+    return result;
+}
+
+BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+    Stopwatch watch;
+    BakedScene result{meshScene(scene, options, progress)};
     result.seconds.mesh = watch.lap();
 
-    result.resolution =
-        options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options.memoryLimit);
     const Hemicube hemicube(
         result.mesh, *result.rays,
         {.resolution = result.resolution, .randomRotation = options.randomRotation, .seed = options.seed});

@@ -10,13 +10,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 
 namespace lambert {
 
+namespace {
+
+/// What --quality stands for, where no other option says otherwise.
+struct Quality {
+    const char* name;
+    double refinement; //!< see MeshOptions
+    int resolution;    //!< the largest, see BakeOptions
+    double rays;       //!< the most
+    double tolerance;
+};
+
+constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3}, Quality{"normal", 1.0, 128, 1.3e9, 1e-4},
+                                Quality{"high", 4.0, 192, 1.2e10, 1e-5}};
+
+const Quality& qualityOf(const std::string& name) {
+    return *std::find_if(kQualities.begin(), kQualities.end(), [&](const Quality& q) { return q.name == name; });
+}
+
+} // namespace
+
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
+    command
+        .add_option("--quality", a.quality,
+                    "preview, normal or high: patches, resolution and tolerance, unless given [normal]")
+        ->check(CLI::IsMember({"preview", "normal", "high"}))
+        ->group("Mesh");
     auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
                        ->type_name("METRES")
                        ->group("Mesh");
@@ -115,7 +141,9 @@ glm::vec3 parseVector(const std::string& text, const std::string& option) {
 
 BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
+    const Quality& quality = qualityOf(a.quality);
     options.mesh.patchLength = a.patchLength;
+    options.mesh.refinement = quality.refinement;
     if (a.patchLength && !(*a.patchLength > 0.0))
         throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
     options.mesh.patches = a.patches;
@@ -124,10 +152,12 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
         throw UsageError(
             fmt::format("--resolution: found {}, allowed are even numbers from 16 to 4096", *a.resolution));
     options.resolution = a.resolution;
+    options.largestResolution = quality.resolution;
+    options.mostRays = quality.rays;
     options.randomRotation = a.rotation == "random";
     options.seed = run.seed;
     options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
-    options.jacobi.tolerance = a.tolerance;
+    options.jacobi.tolerance = a.tolerance.value_or(quality.tolerance);
     options.jacobi.bounces = a.bounces;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
@@ -163,6 +193,12 @@ const Camera& namedCamera(const std::string& name, const Scene& scene) {
 
 void checkCamera(const PictureArguments& a, const Scene& scene) {
     if (!a.path.empty() && !a.camera.empty()) namedCamera(a.camera, scene);
+}
+
+double pictureRays(const PictureArguments& a) {
+    if (a.path.empty()) return 0.0;
+    const auto [width, height] = parseSize(a.size);
+    return static_cast<double>(width) * height * a.samples * a.samples;
 }
 
 void checkPicture(const PictureArguments& a) {

@@ -18,6 +18,7 @@ namespace lambert {
 /// What the user typed, by topic. Every command adds the groups that apply to it.
 
 struct TransportArguments {
+    std::string quality = "normal";
     std::optional<double> patchLength;
     std::optional<std::size_t> patches;
     bool wholeContacts = false;
@@ -27,7 +28,7 @@ struct TransportArguments {
     std::string rotation = "random";
     double memoryLimit = 8.0 * 1073741824.0;
     std::string solver = "jacobi";
-    double tolerance = 1e-4;
+    std::optional<double> tolerance;
     int bounces = 0;
 };
 
@@ -63,6 +64,9 @@ struct Picture {
 
 /// The picture's size and camera: the named one, the one by --eye, the scene's first, or a default one.
 Picture picture(const PictureArguments& arguments, const Scene& scene, const RayCaster& rays);
+
+/// Rays that the picture takes; 0 without one. Throws UsageError.
+double pictureRays(const PictureArguments& arguments);
 
 /// Check what can be checked of a picture before any work, and once the scene is read. Throw UsageError.
 void checkPicture(const PictureArguments& arguments);

@@ -61,7 +61,8 @@ Json optionsJson(const BakeReportInput& in) {
     options["crease_angle"] = in.transport.creaseAngle;
     options["resolution"] = baked.resolution;
     options["rotation"] = in.transport.rotation;
-    options["tolerance"] = in.transport.tolerance;
+    options["quality"] = in.transport.quality;
+    options["tolerance"] = bakeOptions(in.transport, in.run).jacobi.tolerance;
     options["bounces"] = in.transport.bounces;
     options["threads"] = threadCount();
     return options;

@@ -4,6 +4,7 @@
 #include "cli/info_report.h"
 #include "cli/interrupt.h"
 #include "cli/scene_facts.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 

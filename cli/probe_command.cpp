@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"

@@ -88,7 +88,11 @@ AppliedOverrides gatherOverrides(const SceneArguments& a) {
 } // namespace
 
 void addSceneArguments(CLI::App& command, SceneArguments& a) {
-    command.add_option("scene", a.path, "Scene: .gltf, .glb, .obj, .ply, .stl or .mgf")->required()->type_name("SCENE");
+    command.add_option("scene", a.path, "Scene: " + sceneExtensions())->required()->type_name("SCENE");
+    addSceneOptions(command, a);
+}
+
+void addSceneOptions(CLI::App& command, SceneArguments& a) {
     command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
         ->type_name("METRES")
         ->group("Scene");

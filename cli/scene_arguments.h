@@ -28,6 +28,7 @@ struct SceneArguments {
 };
 
 void addSceneArguments(CLI::App& command, SceneArguments& arguments);
+void addSceneOptions(CLI::App& command, SceneArguments& arguments); ///< the same without the scene's path
 
 /// Reads the scene and makes the changes that the overrides file and the options ask for; options win. What was changed
 /// stands in the report. Throws InputError, UsageError, Cancelled.

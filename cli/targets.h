@@ -1,19 +1,9 @@
 #pragma once
 
-#include "cli/scene_arguments.h"
-
 #include <filesystem>
 #include <span>
-#include <vector>
 
 namespace lambert {
-
-/// The files a scene is read from: itself and, of an OBJ, the material libraries it names, of an MGF, what it includes.
-/// Throws InputError if an OBJ cannot be read.
-std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& scene);
-
-/// These, and the file of overrides, whether it is used or not.
-std::vector<std::filesystem::path> inputFiles(const SceneArguments& arguments);
 
 /// To be called before any work. Throws UsageError if a target is one of the inputs or is named twice,
 /// SystemError if it cannot be written. Empty paths are skipped.

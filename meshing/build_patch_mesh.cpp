@@ -18,7 +18,7 @@
 
 namespace lambert {
 
-std::size_t defaultPatches(const Scene& scene) {
+std::size_t defaultPatches(const Scene& scene, double refinement) {
     const std::size_t polygons = scene.polygons.size();
     return polygons + std::max<std::size_t>(5000, polygons / 4);
 }
@@ -259,7 +259,7 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
                                          *options.patchLength, predicted, kMostPatches));
         return divide(scene, index, contacts, *options.patchLength, progress, counts);
     }
-    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene)));
+    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
     const auto polygons = static_cast<double>(litPolygons(scene));

@@ -49,6 +49,10 @@ struct ReadResult {
 /// or not 1 for glTF.
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// Whether readScene has a reader for files of this name, and the extensions of which that is so (".obj, .gltf and .glb").
+bool hasSceneExtension(const std::filesystem::path& path);
+std::string sceneExtensions();
+
 /// The readers behind readScene.
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options);
 ReadResult readGltf(const std::filesystem::path& path, const ReadOptions& options);
