@@ -58,14 +58,14 @@ MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& 
 
 /// A scene with its light, and what a caller may want to know of how it came about.
 struct BakedScene : MeshedScene {
-    RadiositySolution solution;
-    BakedMesh baked;
+    RadiositySolution solution{};
+    BakedMesh baked{};
 
     std::uint64_t rayCount = 0;
-    RowQuality rows;
+    RowQuality rows{};
     std::size_t separatedFaces = 0;
-    BakeSeconds seconds;
-    std::vector<std::string> warnings; //!< one line each
+    BakeSeconds seconds{};
+    std::vector<std::string> warnings{}; //!< one line each
 };
 
 /// meshScene, then form factors by hemicube, solution, and reconstruction at the vertices. Throws InputError if the scene

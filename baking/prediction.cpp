@@ -77,7 +77,9 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     const MeshedScene meshed = meshScene(scene, options, progress);
     BakePrediction result;
     result.seconds.mesh = watch.lap();
-    const Hemicube hemicube(meshed.mesh, *meshed.rays, {meshed.resolution, options.randomRotation, options.seed});
+    const Hemicube hemicube(
+        meshed.mesh, *meshed.rays,
+        {.resolution = meshed.resolution, .randomRotation = options.randomRotation, .seed = options.seed});
     const Pilot pilot = pilotRows(meshed, hemicube, progress);
 
     const auto patches = static_cast<double>(meshed.mesh.size());

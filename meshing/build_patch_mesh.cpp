@@ -18,11 +18,6 @@
 
 namespace lambert {
 
-std::size_t defaultPatches(const Scene& scene, double refinement) {
-    const std::size_t polygons = scene.polygons.size();
-    return polygons + std::max<std::size_t>(5000, polygons / 4);
-}
-
 namespace {
 
 constexpr double kMostPatches = 2e8;
@@ -242,6 +237,16 @@ std::size_t litPolygons(const Scene& scene) {
     return static_cast<std::size_t>(std::count_if(scene.polygons.begin(), scene.polygons.end(),
                                                   [&](const Polygon& polygon) { return !isOccluder(scene, polygon); }));
 }
+
+} // namespace
+
+std::size_t defaultPatches(const Scene& scene, double refinement) {
+    const std::size_t polygons = litPolygons(scene);
+    const auto added = static_cast<double>(std::max<std::size_t>(5000, polygons / 4));
+    return polygons + static_cast<std::size_t>(refinement * added);
+}
+
+namespace {
 
 /// The patches, with the material's constants for what is on them.
 PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport& counts) {
