@@ -111,8 +111,11 @@ private:
         const std::uint32_t node = builder_.addNode("default");
         std::vector<std::uint32_t> corners;
         forRecords(records, element, [&] {
+            const std::vector<double>& list = records.list(*indices);
+            if (list.size() > kMostPolygonCorners)
+                records.fail(fmt::format("{} vertices", list.size()), fmt::format("at most {}", kMostPolygonCorners));
             corners.clear();
-            for (const double index : records.list(*indices)) {
+            for (const double index : list) {
                 if (!(index >= 0.0 && index < static_cast<double>(vertexCount_)) || index != std::floor(index))
                     records.fail(fmt::format("the vertex {}", index), fmt::format("0 to {}", vertexCount_ - 1));
                 corners.push_back(static_cast<std::uint32_t>(index));

@@ -14,6 +14,9 @@ namespace lambert {
 /// Per channel; above it the number of bounces grows without bound.
 inline constexpr float kMaxReflectance = 0.99F;
 
+/// Of one polygon in a file: splitting it takes time that may grow with the square.
+inline constexpr std::size_t kMostPolygonCorners = std::size_t{1} << 16;
+
 /// What all readers share: takes what a file says and makes a Scene of triangles and convex planar quads of
 /// it, counting and naming what has to be dropped or changed on the way.
 class SceneBuilder {

@@ -402,6 +402,13 @@ TEST_F(PlyReader, RejectsListsLongerThanTheFile) {
         }
 }
 
+TEST_F(PlyReader, RejectsPolygonsOfTooManyVertices) {
+    std::string face = "65537";
+    for (int k = 0; k < 65537; ++k) face += fmt::format(" {}", k % 4);
+    expectError(ascii(kVertices + "element face 1\nproperty list int int vertex_index\n", kCorners + face),
+                "face 0: found 65537 vertices, expected at most 65536");
+}
+
 TEST_F(PlyReader, RejectsCountsThatDoNotFitIntoTheFile) {
     const std::string types = "property float x\nproperty float y\nproperty float z\n";
     for (const std::string count : {"1000000000", "4294967296", "18446744073709551615"}) {
