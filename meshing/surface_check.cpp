@@ -47,6 +47,11 @@ std::vector<EdgeUse> edgeUses(const Scene& scene) {
     return uses;
 }
 
+/// Whether it matters where the front is.
+bool isOneSided(const Scene& scene, const Polygon& polygon) {
+    return polygon.backMaterial == kNone && !isOccluder(scene, polygon);
+}
+
 /// What happens at edges, kept by one polygon each until the shells are known.
 class EdgeFindings {
 public:
@@ -83,12 +88,11 @@ private:
         for (const EdgeUse& use : uses.subspan(1)) sets.unite(first.polygon, use.polygon);
         if (uses.size() > 2) {
             ++branched[first.polygon];
-        } else if (uses[1].forward == first.forward && isOneSided(first) && isOneSided(uses[1])) {
+        } else if (uses[1].forward == first.forward && isOneSided(scene_, scene_.polygons[first.polygon]) &&
+                   isOneSided(scene_, scene_.polygons[uses[1].polygon])) {
             ++inconsistent[first.polygon];
         }
     }
-
-    bool isOneSided(const EdgeUse& use) const { return scene_.polygons[use.polygon].backMaterial == kNone; }
 
     const Scene& scene_;
 };
@@ -113,38 +117,49 @@ bool contains(const Bounds& outer, const Bounds& inner) {
            glm::all(glm::greaterThanEqual(outer.upper, inner.upper)) && outer.diagonal() > inner.diagonal();
 }
 
+/// A shell that grows by one polygon after the other.
+struct GrowingShell {
+    Shell shell;
+    double largest = 0.0; ///< area of a polygon
+
+    explicit GrowingShell(const glm::vec3& point) { shell.bounds = {point, point}; }
+
+    void add(const Scene& scene, const Polygon& polygon, const glm::dvec3& from) {
+        const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
+        ++shell.polygons;
+        shell.area += area;
+        shell.volume += sixfoldVolume(scene, polygon, from) / 6.0;
+        shell.oneSided = shell.oneSided && isOneSided(scene, polygon);
+        grow(shell.bounds, scene, polygon);
+        if (area <= largest) return;
+        largest = area;
+        shell.node = polygon.node;
+        shell.material = polygon.material;
+    }
+};
+
 std::vector<Shell> collectShells(const Scene& scene, EdgeFindings& findings) {
+    const Bounds bounds = boundsOf(scene);
+    const glm::dvec3 centre(0.5F * (bounds.lower + bounds.upper));
     std::vector<std::uint32_t> shellOf(scene.polygons.size(), kNone);
-    std::vector<Shell> shells;
-    std::vector<double> largest;
-    const glm::dvec3 from(0.5F * (boundsOf(scene).lower + boundsOf(scene).upper));
+    std::vector<GrowingShell> growing;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
         const Polygon& polygon = scene.polygons[i];
         std::uint32_t& index = shellOf[findings.sets.root(i)];
         if (index == kNone) {
-            index = static_cast<std::uint32_t>(shells.size());
-            shells.emplace_back();
-            shells.back().bounds = {corner(scene, polygon, 0), corner(scene, polygon, 0)};
-            largest.push_back(0.0);
+            index = static_cast<std::uint32_t>(growing.size());
+            growing.emplace_back(corner(scene, polygon, 0));
         }
-        Shell& shell = shells[index];
-        const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
-        ++shell.polygons;
-        shell.area += area;
-        shell.openEdges += findings.open[i];
-        shell.branchedEdges += findings.branched[i];
-        shell.inconsistentEdges += findings.inconsistent[i];
-        shell.oneSided = shell.oneSided && polygon.backMaterial == kNone;
-        shell.volume += sixfoldVolume(scene, polygon, from) / 6.0;
-        grow(shell.bounds, scene, polygon);
-        if (area > largest[index]) {
-            largest[index] = area;
-            shell.node = polygon.node;
-            shell.material = polygon.material;
-        }
+        growing[index].add(scene, polygon, centre);
+        growing[index].shell.openEdges += findings.open[i];
+        growing[index].shell.branchedEdges += findings.branched[i];
+        growing[index].shell.inconsistentEdges += findings.inconsistent[i];
     }
-    for (Shell& shell : shells)
-        if (!shell.isClosed() || shell.inconsistentEdges > 0) shell.volume = 0.0;
+    std::vector<Shell> shells;
+    for (GrowingShell& grown : growing) {
+        if (!grown.shell.isClosed() || grown.shell.inconsistentEdges > 0) grown.shell.volume = 0.0;
+        shells.push_back(grown.shell);
+    }
     std::stable_sort(shells.begin(), shells.end(), [](const Shell& a, const Shell& b) { return a.area > b.area; });
     return shells;
 }

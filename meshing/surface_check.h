@@ -14,7 +14,7 @@ struct Shell {
     std::size_t openEdges = 0;         //!< with nothing on their other side
     std::size_t branchedEdges = 0;     //!< shared by three or more polygons
     std::size_t inconsistentEdges = 0; //!< shared by two that face opposite ways
-    bool oneSided = true;              //!< no polygon shows anything on its back
+    bool oneSided = true;              //!< every polygon has a front and a black back
     double volume = 0.0;               //!< m³; negative if the fronts face inward. 0 if open or inconsistent
     Bounds bounds;
     std::uint32_t node = 0;     //!< of its largest polygon, into Scene::nodes
@@ -35,7 +35,8 @@ struct SurfaceCheck {
 };
 
 /// Checks a prepared scene (see prepareScene). Where more than two polygons meet at an edge, those of one node are taken
-/// together first: a box that stands on another is two shells. Occluders count as surfaces.
+/// together first: a box that stands on another is two shells. Occluders count as
+/// surfaces that face both ways.
 SurfaceCheck checkSurfaces(const Scene& scene);
 
 } // namespace lambert

@@ -74,7 +74,11 @@ TEST(SurfaceCheck, TurnedFaceDisagreesWithItsFourNeighbours) {
     Scene scene = unitBox();
     turn(scene.polygons[2]);
     EXPECT_EQ(checkSurfaces(prepareScene(scene)).inconsistentEdges, 4U);
-    scene.materials[0].twoSided = true; // then it does not matter
+    // Then it does not matter:
+    Scene occluder = scene;
+    occluder.materials[0].occluder = true;
+    EXPECT_EQ(checkSurfaces(prepareScene(occluder)).inconsistentEdges, 0U);
+    scene.materials[0].twoSided = true;
     EXPECT_EQ(checkSurfaces(prepareScene(scene)).inconsistentEdges, 0U);
 }
 
