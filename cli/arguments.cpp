@@ -174,10 +174,11 @@ void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, c
 
 } // namespace
 
-ReadResult readScene(const SceneArguments& a) {
+ReadResult readScene(const SceneArguments& a, Progress* progress) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
+    ReadResult result =
+        readScene(a.path, {.metresPerUnit = a.unit.value_or(1.0), .twoSided = a.twoSided, .progress = progress});
     overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
                       [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
     overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,

@@ -59,7 +59,7 @@ void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addPictureArguments(CLI::App& command, PictureArguments& arguments);
 
 /// Reads the scene and applies --emit and --reflectance. Throws InputError, UsageError.
-ReadResult readScene(const SceneArguments& arguments);
+ReadResult readScene(const SceneArguments& arguments, Progress* progress = nullptr);
 
 /// Throws UsageError.
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);

@@ -113,7 +113,7 @@ ExitCode bake(const BakeArguments& a) {
     const InterruptGuard interrupt(progress);
 
     const Stopwatch reading;
-    ReadResult read = readScene(a.scene);
+    ReadResult read = readScene(a.scene, &progress);
     const double readSeconds = reading.seconds();
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
     checkCamera(a.picture, read.scene);

@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/targets.h"
+#include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
 #include "meshing/prepare.h"
@@ -143,7 +144,8 @@ Json infoReport(const InfoArguments& a, const ReadResult& read, const SceneFacts
 
 ExitCode info(const InfoArguments& a) {
     checkTargets(std::array{a.run.json}, filesOfScene(a.scene.path));
-    const ReadResult read = readScene(a.scene);
+    TerminalProgress progress(a.run.quiet);
+    const ReadResult read = readScene(a.scene, &progress);
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
     const SceneFacts facts = gather(read.scene);
     if (!a.run.json.empty()) writeJson(infoReport(a, read, facts), a.run.json);

@@ -106,7 +106,7 @@ ExitCode probe(const ProbeArguments& a) {
     const InterruptGuard interrupt(progress);
     const Stopwatch total;
     const std::vector<ProbePoint> points = readPoints(a.points);
-    const ReadResult read = readScene(a.scene);
+    const ReadResult read = readScene(a.scene, &progress);
     const double readSeconds = total.seconds();
     for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
     const BakedScene baked = bakeScene(read.scene, options, progress);

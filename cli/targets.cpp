@@ -5,6 +5,8 @@
 #include "core/whole_file.h"
 #include "scene/input_file.h"
 #include "scene/obj_lines.h"
+#include "scene/obj_mtl.h"
+#include "scene/scene_reader.h"
 
 #include <fmt/format.h>
 
@@ -26,20 +28,38 @@ bool sameFile(const fs::path& a, const fs::path& b) {
     return !error && wholeA == wholeB;
 }
 
+/// The names of the images of a material library, as written; what cannot be read has none.
+std::vector<std::string> imagesOfMtl(const fs::path& path) {
+    std::vector<std::string> images;
+    try {
+        ObjLines lines(path);
+        for (const MtlMaterial& material : readMtl(lines).materials)
+            for (const auto* map : {&material.diffuseMap, &material.emissionMap, &material.opacityMap})
+                if (*map) images.push_back((*map)->file);
+    } catch (const InputError&) {
+        // Reading the scene tells what is wrong.
+    }
+    return images;
+}
+
 } // namespace
 
 std::vector<fs::path> filesOfScene(const fs::path& scene) {
     std::vector<fs::path> files{scene};
     if (formatOf(scene) != BakedFormat::Obj) return files;
-    const std::string text = readInputFile(scene);
-    ObjLines lines(text);
+    const auto named = [&](std::string_view name) {
+        return namedFile(scene.parent_path(), std::string(name), {.allowOutsideFiles = true});
+    };
+    ObjLines lines(scene);
     while (const auto line = lines.next()) {
         if (line->keyword != "mtllib") continue;
-        files.push_back(scene.parent_path() / line->rest); // one name with spaces in it, or several names
+        files.push_back(named(line->rest)); // one name with spaces in it, or several names
         std::string_view rest = line->rest;
-        for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest))
-            files.push_back(scene.parent_path() / word);
+        for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) files.push_back(named(word));
     }
+    const std::vector<fs::path> libraries(files.begin() + 1, files.end());
+    for (const fs::path& library : libraries)
+        for (const std::string& image : imagesOfMtl(library)) files.push_back(named(image));
     return files;
 }
 
