@@ -15,6 +15,9 @@ namespace lambert {
 
 namespace {
 
+/// Every edge at a point costs a turn around all edges there, so that the time grows with the square of this.
+constexpr std::size_t kMostReturns = 1000;
+
 /// How often the border goes around a face, counter-clockwise; and how much that changes from here across each edge.
 struct Winding {
     int number = 0;
@@ -36,16 +39,17 @@ using Face = Triangulation::Face_handle;
 std::optional<std::vector<Vertex>> insertPoints(Triangulation& triangulation, std::span<const glm::dvec2> points,
                                                 std::size_t borderCount) {
     std::vector<Vertex> vertices(points.size());
+    std::vector<std::size_t> returns(borderCount, 0);
     Face hint;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t before = triangulation.number_of_vertices();
         vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
         if (triangulation.number_of_vertices() != before) {
             vertices[i]->info() = static_cast<std::uint32_t>(i);
-        } else if (i >= borderCount) {
+            hint = vertices[i]->face(); // not that of an older one, which may be a hub's and lie on its far side
+        } else if (i >= borderCount || ++returns[vertices[i]->info()] > kMostReturns) {
             return std::nullopt;
         }
-        hint = vertices[i]->face();
     }
     for (std::size_t i = 0; i < borderCount; ++i)
         if (vertices[i] == vertices[(i + 1) % borderCount]) return std::nullopt;

@@ -19,7 +19,7 @@ namespace lambert {
 ///
 /// Returns counter-clockwise triangles of point indices that cover the polygon once, or nothing if the border or the
 /// constraints cross themselves or each other, if the border covers something twice or clockwise, or if two points
-/// coincide that are consecutive or not both on the border.
+/// coincide that are consecutive or not both on the border, or more than 1,000.
 std::optional<std::vector<std::array<std::uint32_t, 3>>>
 triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
                    std::span<const std::array<std::uint32_t, 2>> constraints = {});
