@@ -148,7 +148,6 @@ TEST(ReadTexture, SaysInOneLineWhatIsWrongWithAFile) {
         EXPECT_LT(reason.size(), 120U) << file << ": " << reason;
         EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
         EXPECT_EQ(reason.find(folder.path().string()), std::string::npos) << "the caller names the file: " << reason;
-        std::printf("%s: %s\n", file.filename().c_str(), reason.c_str());
     }
     EXPECT_THROW(readTexture(std::span<const std::uint8_t>(), "none", TextureContent::Colour), InputError);
 }
