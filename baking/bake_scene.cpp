@@ -26,6 +26,14 @@ void requireLight(const Scene& scene) {
         throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
 }
 
+/// What no material's constants tell: an emission texture may be black.
+void requireLight(const PatchMesh& mesh) {
+    const auto& emitted = mesh.emittedRadiosity;
+    if (std::all_of(emitted.begin(), emitted.end(), [](const Rgb& b) { return b == Rgb(0.0F); }))
+        throw InputError("the scene has no light: wherever a material emits, its emission texture is black or has a "
+                         "hole; give another light with --emit MATERIAL=r,g,b");
+}
+
 /// Entries per row at a resolution, from rows of a few patches spread over the mesh.
 double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int resolution) {
     const Hemicube method(mesh, rays, {.resolution = resolution});
@@ -147,6 +155,7 @@ MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& 
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
+    requireLight(result.mesh);
     progress.end();
     result.resolution = options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options);
     return result;

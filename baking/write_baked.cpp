@@ -31,6 +31,20 @@ void writeObj(const BakedMesh& mesh, const std::filesystem::path& path, const Ba
     writeWholeFile(path, encodeObj(mesh, options, materials.filename().string()));
 }
 
+void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat format,
+           const BakeOutputOptions& options) {
+    switch (format) {
+    case BakedFormat::Glb:
+        return writeWholeFile(path, encodeGltf(mesh, options, true));
+    case BakedFormat::Gltf:
+        return writeWholeFile(path, encodeGltf(mesh, options, false));
+    case BakedFormat::Ply:
+        return writeWholeFile(path, encodePly(mesh, options));
+    case BakedFormat::Obj:
+        return writeObj(mesh, path, options);
+    }
+}
+
 } // namespace
 
 std::optional<BakedFormat> formatOf(const std::filesystem::path& path) {
@@ -52,16 +66,10 @@ void writeBaked(const BakedMesh& mesh, const std::filesystem::path& path, BakedF
     requireFinite(mesh.normals, "normal", path);
     requireFinite(mesh.radiosity, "radiosity", path);
     requireFinite(mesh.irradiance, "irradiance", path);
-    switch (format) {
-    case BakedFormat::Glb:
-        return writeWholeFile(path, encodeGltf(mesh, options, true));
-    case BakedFormat::Gltf:
-        return writeWholeFile(path, encodeGltf(mesh, options, false));
-    case BakedFormat::Ply:
-        return writeWholeFile(path, encodePly(mesh, options));
-    case BakedFormat::Obj:
-        return writeObj(mesh, path, options);
-    }
+    if (mesh.opacity.empty())
+        write(mesh, path, format, options);
+    else
+        write(withoutHoles(mesh), path, format, options);
 }
 
 } // namespace lambert

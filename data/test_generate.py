@@ -90,7 +90,7 @@ def read_obj(path):
         elif key == "usemtl":
             material = values[0]
         elif key == "f":
-            faces.append((material, [vertices[int(v) - 1] for v in values]))
+            faces.append((material, [vertices[int(v.split("/")[0]) - 1] for v in values]))
     return faces
 
 

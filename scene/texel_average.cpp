@@ -146,7 +146,14 @@ void TexelAverage::forRows(const Axis& axis, const glm::dvec2& from, const glm::
 glm::dvec4 TexelAverage::integral(std::span<const glm::dvec2> border) const {
     double left = border[0].x;
     for (const glm::dvec2& p : border) left = std::min(left, p.x);
-    const std::int64_t origin = columns_.cellAt(left); // F begins there: the smaller it is, the less rounding
+    const std::int64_t origin = columns_.cellAt(left);
+    // F begins at the border's left end: the smaller it is, the less rounding.
+    const auto begin = [&](std::int64_t cell) { return cell == origin ? left : static_cast<double>(cell); };
+    const auto fBefore = [&](int row, std::int64_t cell) {
+        if (cell == origin) return glm::dvec4(0.0);
+        return sumBefore(row, cell) - sumBefore(row, origin) -
+               (left - static_cast<double>(origin)) * value(origin, row);
+    };
     glm::dvec4 sum(0.0);
     for (std::size_t k = 0; k < border.size(); ++k) {
         const glm::dvec2& a = border[k];
@@ -157,13 +164,12 @@ glm::dvec4 TexelAverage::integral(std::span<const glm::dvec2> border) const {
             const auto [low, high] = std::minmax(from.x, to.x);
             const double height = (up ? 1.0 : -1.0) * (to.y - from.y);
             const double width = high - low;
-            std::int64_t column = columns_.cellAt(low);
-            glm::dvec4 before = column == origin ? glm::dvec4(0.0) : sumBefore(row, column) - sumBefore(row, origin);
+            glm::dvec4 before = fBefore(row, columns_.cellAt(low));
             forCells(columns_, low, high, [&](std::int64_t cell, double x0, double x1) {
                 const glm::dvec4 f = value(cell, row);
                 const double share = width > 0.0 ? (x1 - x0) / width : 1.0;
-                sum += height * share * (before + (0.5 * (x0 + x1) - static_cast<double>(cell)) * f);
-                before += f;
+                sum += height * share * (before + 0.5 * ((x0 - begin(cell)) + (x1 - begin(cell))) * f);
+                before += (static_cast<double>(cell + 1) - begin(cell)) * f;
             });
         });
     }

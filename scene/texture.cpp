@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "scene/input_file.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -12,6 +11,9 @@
 #include <cassert>
 #include <cmath>
 #include <utility>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 namespace lambert {
 
@@ -24,8 +26,45 @@ constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
 constexpr int kMostChannels = 64;
 constexpr int kPixelsAtOnce = 1 << 20;
 
-/// OpenImageIO's message as one short line.
-std::string shortReason(const std::string& message) { return oneLine(message); }
+/// What deflate makes of one byte at most, and a little more.
+constexpr std::uint64_t kMostPerPngByte = 1100;
+
+/// OpenImageIO's message about `file`, without that name and what follows from the first reason.
+std::string shortReason(std::string message, const std::string& file) {
+    if (message.find("could not find a format reader") != std::string::npos)
+        return "is in no image format that is known";
+    for (const std::string& name : {" \"" + file + "\"", file})
+        for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
+            message.erase(at, name.size());
+    const std::string reason = oneLine(message, 100);
+    return reason.empty() ? "cannot be read" : reason.substr(0, reason.find("; "));
+}
+
+/// Bytes as a file that has a name but lies in memory: Debian's OpenImageIO reads JPEG only by name.
+class MemoryFile {
+public:
+    explicit MemoryFile(std::span<const std::uint8_t> bytes) : descriptor_(memfd_create("image", MFD_CLOEXEC)) {
+        while (descriptor_ >= 0 && !bytes.empty()) {
+            const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
+            if (written <= 0) break;
+            bytes = bytes.subspan(static_cast<std::size_t>(written));
+        }
+        if (descriptor_ >= 0 && bytes.empty()) return;
+        close();
+        throw SystemError("not enough memory for an image inside a scene");
+    }
+    ~MemoryFile() { close(); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+private:
+    void close() const {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    int descriptor_;
+};
 
 float unitValue(std::uint8_t code) { return static_cast<float>(code) / 255.0F; }
 
@@ -50,8 +89,9 @@ std::size_t texelCount(int width, int height) {
 /// Reads one image, some rows at a time: a header that promises more than the file holds costs no memory.
 class Reading {
 public:
-    Reading(OIIO::ImageInput& input, std::string name, TextureContent content)
-        : input_(input), spec_(input.spec()), name_(std::move(name)), content_(content) {}
+    /// `file` is what OpenImageIO calls the image.
+    Reading(OIIO::ImageInput& input, const std::string& file, std::string name, TextureContent content)
+        : input_(input), spec_(input.spec()), file_(file), name_(std::move(name)), content_(content) {}
 
     std::shared_ptr<const Texture> run() {
         if (spec_.width < 1 || spec_.height < 1 || spec_.nchannels < 1) throw InputError("has no pixels");
@@ -60,10 +100,21 @@ public:
         if (spec_.nchannels > kMostChannels)
             throw InputError(fmt::format("found {} channels, allowed are {}", spec_.nchannels, kMostChannels));
         if (spec_.deep || spec_.depth > 1) throw InputError("found a deep or volume image, expected a flat one");
+        refuseEmptyPromise();
         return spec_.format == OIIO::TypeDesc::UINT8 ? readBytes() : readFloats();
     }
 
 private:
+    /// Interlaced images are not read row by row.
+    void refuseEmptyPromise() const {
+        if (std::string_view(input_.format_name()) != "png") return;
+        std::error_code error;
+        const std::uint64_t size = std::filesystem::file_size(file_, error);
+        if (!error && spec_.image_bytes(true) / kMostPerPngByte > size)
+            throw InputError(
+                fmt::format("found {} bytes, too few for {} x {} pixels", size, spec_.width, spec_.height));
+    }
+
     struct Channels {
         int red = 0, green = 0, blue = 0, alpha = -1;
     };
@@ -91,7 +142,7 @@ private:
                 tiled ? input_.read_tiles(0, 0, spec_.x, spec_.x + spec_.width, y, y + rows, spec_.z, spec_.z + 1, 0,
                                           spec_.nchannels, type, buffer.data())
                       : input_.read_scanlines(0, 0, y, y + rows, spec_.z, 0, spec_.nchannels, type, buffer.data());
-            if (!read) throw InputError(shortReason(input_.geterror()));
+            if (!read) throw InputError(shortReason(input_.geterror(), file_));
             use(pixels, buffer);
         }
     }
@@ -141,23 +192,35 @@ private:
 
     OIIO::ImageInput& input_;
     OIIO::ImageSpec spec_;
+    const std::string& file_;
     std::string name_;
     TextureContent content_;
 };
 
-std::shared_ptr<const Texture> read(const std::string& file, const std::string& name, TextureContent content,
-                                    OIIO::Filesystem::IOProxy* proxy) {
+/// Opens `file` by its name, or as `format` if that is given.
+std::shared_ptr<const Texture> read(const std::string& file, const char* format, const std::string& name,
+                                    TextureContent content) {
     // Transparent pixels keep their colour as it stands in the file.
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;
-    const auto input = OIIO::ImageInput::open(file, &config, proxy);
-    if (!input) throw InputError(shortReason(OIIO::geterror()));
-    auto texture = Reading(*input, name, content).run();
+    std::unique_ptr<OIIO::ImageInput> input;
+    std::string error;
+    if (format == nullptr) {
+        input = OIIO::ImageInput::open(file, &config);
+        if (!input) error = OIIO::geterror();
+    } else if (input = OIIO::ImageInput::create(format); input) {
+        OIIO::ImageSpec spec;
+        if (!input->open(file, spec, config)) error = std::exchange(input, nullptr)->geterror();
+    }
+    if (!input) throw InputError(shortReason(error, file));
+    auto texture = Reading(*input, file, name, content).run();
     input->close();
     return texture;
 }
 
 } // namespace
+
+double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
 
 Texture::Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba, TexelEncoding encoding)
     : name_(std::move(name)), width_(width), height_(height), encoding_(encoding), bytes_(std::move(rgba)) {
@@ -183,7 +246,7 @@ float Texture::opacity(int x, int y) const {
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
-    return read(path.string(), path.filename().string(), content, nullptr);
+    return read(path.string(), nullptr, path.filename().string(), content);
 }
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
@@ -191,9 +254,8 @@ std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, 
     const std::string_view start(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const bool jpeg = start.starts_with("\xFF\xD8");
     if (!jpeg && !start.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
-    OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-    // The name only has to tell the format.
-    return read(jpeg ? "image.jpg" : "image.png", name, content, &memory);
+    const MemoryFile file(bytes);
+    return read(file.path(), jpeg ? "jpeg" : "png", name, content);
 }
 
 } // namespace lambert

@@ -48,6 +48,9 @@ private:
     std::vector<glm::vec4> floats_; //!< one of the two is empty
 };
 
+/// The linear value of an sRGB one, both 0 to 1.
+double srgbDecoded(double value);
+
 /// How the numbers of an image become a texture.
 enum class TextureContent {
     Colour,    //!< 8-bit images are sRGB; opacity is the alpha channel, 1 without one
@@ -58,7 +61,8 @@ enum class TextureContent {
 /// Reads an image through OpenImageIO. Throws InputError with the file's name and one reason if it is missing, broken, of
 /// zero size, or larger than 2^28 texels.
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content);
-/// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages.
+/// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages. Throws SystemError if
+/// there is no memory for them.
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
                                            TextureContent content);
 
