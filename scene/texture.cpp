@@ -1,7 +1,9 @@
 #include "scene/texture.h"
 
 #include "core/error.h"
+#include "scene/image_guard.h"
 #include "scene/input_file.h"
+#include "scene/quiet_libraries.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -59,7 +61,8 @@ private:
         Channels result;
         const int colours = spec_.alpha_channel >= 0 ? spec_.nchannels - 1 : spec_.nchannels;
         if (colours >= 3) result = {0, 1, 2, -1};
-        result.alpha = spec_.alpha_channel;
+        // OpenImageIO's GIF reader says 4 for the last of 4.
+        result.alpha = std::min(spec_.alpha_channel, spec_.nchannels - 1);
         return result;
     }
 
@@ -127,6 +130,7 @@ private:
 
 std::shared_ptr<const Texture> read(const std::string& file, const std::string& name, TextureContent content,
                                     OIIO::Filesystem::IOProxy* proxy) {
+    const QuietLibraries quiet;
     // Transparent pixels keep their colour as it stands in the file.
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;
@@ -161,11 +165,14 @@ glm::vec4 Texture::texel(int x, int y) const {
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
+    const std::string bytes = readInputFile(path);
+    refuseHostileImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     return read(path.string(), path.filename().string(), content, nullptr);
 }
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
                                            TextureContent content) {
+    refuseHostileImage(bytes);
     OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
     // The name only has to tell the format.
     const bool jpeg = bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8;
