@@ -38,6 +38,12 @@ void addSceneArguments(CLI::App& command, SceneArguments& a) {
         ->type_name("METRES")
         ->group("Scene");
     command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
+    command
+        .add_option("--most-polygons", a.mostPolygons,
+                    "Refuses scenes with more; 0: a million and one for each byte of the file [0]")
+        ->type_name("N")
+        ->check(between(0.0, 4e9))
+        ->group("Scene");
     command.add_option("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr")
         ->type_name("MATERIAL=r,g,b")
         ->group("Scene");
@@ -177,7 +183,11 @@ void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, c
 ReadResult readScene(const SceneArguments& a) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
+    ReadOptions options;
+    options.metresPerUnit = a.unit.value_or(1.0);
+    options.twoSided = a.twoSided;
+    options.mostPolygons = a.mostPolygons;
+    ReadResult result = readScene(a.path, options);
     overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
                       [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
     overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,

@@ -20,6 +20,7 @@ struct SceneArguments {
     std::filesystem::path path;
     std::optional<double> unit;
     bool twoSided = false;
+    std::size_t mostPolygons = 0;         //!< see ReadOptions
     std::vector<std::string> emit;        //!< MATERIAL=r,g,b
     std::vector<std::string> reflectance; //!< MATERIAL=r,g,b
 };

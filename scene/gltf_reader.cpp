@@ -46,6 +46,7 @@ public:
 
     ReadResult run() {
         refuseUnknownExtensions();
+        for (const tinygltf::Buffer& buffer : model_.buffers) builder_.countBytes(buffer.data.size());
         materials_ = addGltfMaterials(file_, model_, builder_);
         for (const GltfNode& node : collectGltfNodes(file_, model_)) {
             const tinygltf::Node& source = model_.nodes[static_cast<std::size_t>(node.index)];

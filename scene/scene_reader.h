@@ -16,6 +16,9 @@ struct ReadOptions {
     bool strict = false;            //!< what would be replaced with a warning (a missing image) is an InputError
     bool allowOutsideFiles = false; //!< a scene may name files outside its own folder
     Progress* progress = nullptr;   //!< of huge files
+    /// A scene with more is an InputError, so that a small file in which much is shown many times cannot fill the memory;
+    /// 0: 2^20 and one for each byte of its files, more than any file has that says each polygon once.
+    std::size_t mostPolygons = 0;
 };
 
 /// What a reader had to leave out or change.
