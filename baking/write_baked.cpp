@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <span>
@@ -27,8 +28,8 @@ void requireFinite(std::span<const glm::vec3> values, const char* what, const st
 void writeObj(const BakedMesh& mesh, const std::filesystem::path& path, const BakeOutputOptions& options) {
     std::filesystem::path materials = path;
     materials.replace_extension(".mtl");
-    writeWholeFile(materials, encodeMtl(mesh));
-    writeWholeFile(path, encodeObj(mesh, options, materials.filename().string()));
+    writeWholeFiles(std::array{FileContent{materials, encodeMtl(mesh)},
+                               FileContent{path, encodeObj(mesh, options, materials.filename().string())}});
 }
 
 void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat format,

@@ -103,6 +103,12 @@ void addSceneOptions(CLI::App& command, SceneArguments& a) {
         ->type_name("N")
         ->check(between(4.0, 1024.0))
         ->group("Scene");
+    command
+        .add_option("--most-polygons", a.mostPolygons,
+                    "Refuses scenes with more; 0: a million and one for each byte of the file [0]")
+        ->type_name("N")
+        ->check(between(0.0, 4e9))
+        ->group("Scene");
     const auto addList = [&](const char* name, std::vector<std::string>& list, const char* text, const char* type) {
         command.add_option(name, list, text)->type_name(type)->allow_extra_args(false)->group("Scene");
     };
@@ -143,6 +149,7 @@ ReadResult readScene(const SceneArguments& a, Progress* progress) {
     options.metresPerUnit = overrides.metresPerUnit;
     options.twoSided = overrides.twoSided;
     options.curveSegments = a.curveSegments;
+    options.mostPolygons = a.mostPolygons;
     options.strict = a.strict;
     options.allowOutsideFiles = a.allowOutsideFiles;
     options.progress = progress;

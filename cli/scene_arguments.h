@@ -17,6 +17,7 @@ struct SceneArguments {
     std::optional<double> unit;
     bool twoSided = false;
     int curveSegments = ReadOptions{}.curveSegments;
+    std::size_t mostPolygons = 0;         //!< see ReadOptions
     std::vector<std::string> emit;        //!< MATERIAL=r,g,b
     std::vector<std::string> reflectance; //!< MATERIAL=r,g,b
     std::vector<std::string> exclude;     //!< nodes

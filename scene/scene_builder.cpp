@@ -19,6 +19,8 @@ namespace lambert {
 
 namespace {
 
+constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finite
+constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
 constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
 constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
@@ -102,7 +104,21 @@ double areaOf(std::span<const std::array<std::uint32_t, 3>> triangles, std::span
 
 } // namespace
 
-SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
+SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file_, error);
+    if (!error) countBytes(size);
+}
+
+std::uintmax_t SceneBuilder::mostPolygons() const {
+    return options_.mostPolygons != 0 ? options_.mostPolygons : kPolygonsOfAnyFile + bytes_;
+}
+
+void SceneBuilder::requireFewerThan(std::uintmax_t most, std::size_t count, const char* what) const {
+    if (count >= most)
+        throw InputError(
+            fmt::format("{}: found more {} than allowed ({}); --most-polygons allows more", file_, what, most));
+}
 
 void SceneBuilder::reserve(std::size_t positions, std::size_t polygons) {
     result_.scene.positions.reserve(positions);
@@ -113,20 +129,22 @@ std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     auto& positions = result_.scene.positions;
     if (positions.size() >= kNone)
         throw InputError(fmt::format("{}: found more vertices than allowed ({})", file_, kNone));
+    requireFewerThan(4 * mostPolygons(), positions.size(), "vertices");
     positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y), static_cast<float>(metres.z));
     return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
 std::uint32_t SceneBuilder::addMaterial(Material material) {
     const Rgb reflectance = glm::clamp(material.reflectance, 0.0F, kMaxReflectance);
-    const Rgb emittedRadiance = glm::max(material.emittedRadiance, 0.0F);
+    const Rgb emittedRadiance = glm::clamp(material.emittedRadiance, 0.0F, kMaxEmission);
     std::string changes;
     if (reflectance != material.reflectance)
         changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {} (no surface returns all light)",
                               material.reflectance.x, material.reflectance.y, material.reflectance.z, kMaxReflectance);
     if (emittedRadiance != material.emittedRadiance)
-        changes += fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
-                               material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
+        changes += fmt::format("{}emission {:g} {:g} {:g} clamped to 0 ... {:g}", changes.empty() ? "" : "; ",
+                               material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z,
+                               kMaxEmission);
     if (!changes.empty()) warn(fmt::format("material {}: {}", inQuotes(material.name), changes));
 
     material.reflectance = reflectance;
@@ -211,6 +229,7 @@ void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint
                               std::span<const CornerSurface> surface) {
     ReadReport& report = result_.report;
     const auto& positions = result_.scene.positions;
+    requireFewerThan(mostPolygons(), report.inputPolygons, "polygons");
     ++report.inputPolygons;
     if (!std::all_of(vertices.begin(), vertices.end(),
                      [&](std::uint32_t vertex) { return isFinite(positions[vertex]); })) {

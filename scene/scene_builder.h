@@ -24,6 +24,10 @@ public:
     /// `file` stands at the beginning of every message.
     SceneBuilder(std::string file, const ReadOptions& options);
 
+    /// Allows one more polygon for each of these bytes that the scene's file names, such as a buffer's; the file's own are
+    /// counted already. See ReadOptions::mostPolygons.
+    void countBytes(std::uintmax_t bytes) { bytes_ += bytes; }
+
     /// Takes the memory for this many, so that growing does not need it twice. More or fewer may follow.
     void reserve(std::size_t positions, std::size_t polygons);
 
@@ -31,8 +35,8 @@ public:
     /// are allowed: the polygons that use them are dropped and counted.
     std::uint32_t addPosition(const glm::dvec3& metres);
 
-    /// Adds a material and returns its index. Reflectance is clamped to [0, 0.99] and negative emission to 0,
-    /// with one warning per material. The numbers must be finite.
+    /// Adds a material and returns its index. Reflectance is clamped to [0, 0.99], emission to
+    /// [0, 1e30], with one warning per material. The numbers must be finite.
     std::uint32_t addMaterial(Material material);
 
     /// Adds the name of a node and returns its index.
@@ -91,6 +95,8 @@ public:
     ReadResult finish();
 
 private:
+    void requireFewerThan(std::uintmax_t most, std::size_t count, const char* what) const;
+    std::uintmax_t mostPolygons() const;
     bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c); //!< into corners_
     bool addQuad();
     bool addSplit();
@@ -104,6 +110,7 @@ private:
 
     std::string file_;
     ReadOptions options_;
+    std::uintmax_t bytes_ = 0; //!< of the scene's files
     ReadResult result_;
     std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;

@@ -18,6 +18,9 @@ struct ReadOptions {
     bool allowOutsideFiles = false; //!< a scene may name files outside its own folder
     Progress* progress = nullptr;   //!< of huge files
     int curveSegments = 24;         //!< of MGF: straight pieces of a full circle, even, 4 to 1024
+    /// A scene with more is an InputError, so that a small file in which much is shown many times cannot fill the memory;
+    /// 0: 2^20 and one for each byte of its files, more than any file has that says each polygon once.
+    std::size_t mostPolygons = 0;
 };
 
 /// What a user changed of a scene, and how.
