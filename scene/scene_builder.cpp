@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -80,6 +81,11 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
 }
 
 } // namespace
+
+Rgb notAboveLargest(const Rgb& factor) {
+    const bool atMostWhite = glm::all(glm::lessThanEqual(factor, Rgb(1.0F)));
+    return atMostWhite ? glm::min(factor, kMaxReflectance) : factor;
+}
 
 SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
 

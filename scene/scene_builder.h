@@ -14,6 +14,10 @@ namespace lambert {
 /// Per channel; above it the number of bounces grows without bound.
 inline constexpr float kMaxReflectance = 0.99F;
 
+/// A factor of textures or tints: up to white it is brought to the largest reflectance, so that white, which is what most
+/// such factors are, needs no warning; beyond white it stays, for SceneBuilder::addMaterial to warn.
+Rgb notAboveLargest(const Rgb& factor);
+
 /// What all readers share: takes what a file says and makes a Scene of triangles and convex planar quads of
 /// it, counting and naming what has to be dropped or changed on the way.
 class SceneBuilder {

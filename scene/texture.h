@@ -13,14 +13,15 @@
 
 namespace lambert {
 
-/// The linear value of an sRGB-encoded one; both 0 to 1.
-double srgbDecoded(double value);
+/// What the colours of an 8-bit image mean; its opacity is linear in any case.
+enum class TexelEncoding : std::uint8_t { Srgb, Linear };
 
 /// An image on a surface: texels are constant squares, row 0 is at the top. Immutable.
 class Texture {
 public:
-    /// `rgba`: 4 bytes per texel, row by row; colours in sRGB, opacity linear.
-    Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba);
+    /// `rgba`: 4 bytes per texel, row by row.
+    Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba,
+            TexelEncoding encoding = TexelEncoding::Srgb);
     /// `rgba`: linear and finite, one per texel, row by row; for images of more than 8 bits.
     Texture(std::string name, int width, int height, std::vector<glm::vec4> rgba);
 
@@ -29,15 +30,22 @@ public:
     int height() const { return height_; }
     /// Linear colour and opacity. 0 <= x < width, 0 <= y < height.
     glm::vec4 texel(int x, int y) const;
+    /// The opacity alone.
+    float opacity(int x, int y) const;
 
 private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+
     std::string name_;
     int width_, height_;
+    TexelEncoding encoding_ = TexelEncoding::Srgb; //!< of bytes_
     std::vector<std::uint8_t> bytes_;
     std::vector<glm::vec4> floats_; //!< one of the two is empty
 };
 
-/// The linear value of an sRGB-encoded one, both in [0, 1].
+/// The linear value of an sRGB one, both 0 to 1.
 double srgbDecoded(double value);
 
 /// How the numbers of an image become a texture.
@@ -50,7 +58,8 @@ enum class TextureContent {
 /// Reads an image through OpenImageIO. Throws InputError with the file's name and one reason if it is missing, broken, of
 /// zero size, or larger than 2^28 texels.
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content);
-/// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages.
+/// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages. Throws SystemError if
+/// there is no memory for them.
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
                                            TextureContent content);
 
