@@ -12,8 +12,6 @@ namespace lambert {
 
 namespace {
 
-/// Bounds the first look at a large scene: a few minutes on two cores.
-constexpr double kMostRays = 1.3e9;
 constexpr double kBackFaceWarning = 0.01;
 /// A patch that sees more backs than this is inside something. (Not all backs: where solids touch, a ray may slip from the
 /// inside of one into the other.)
@@ -26,6 +24,14 @@ void requireLight(const Scene& scene) {
     });
     if (!lit)
         throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
+}
+
+/// What no material's constants tell: an emission texture may be black.
+void requireLight(const PatchMesh& mesh) {
+    const auto& emitted = mesh.emittedRadiosity;
+    if (std::all_of(emitted.begin(), emitted.end(), [](const Rgb& b) { return b == Rgb(0.0F); }))
+        throw InputError("the scene has no light: wherever a material emits, its emission texture is black or has a "
+                         "hole; give another light with --emit MATERIAL=r,g,b");
 }
 
 /// Entries per row at a resolution, from rows of a few patches spread over the mesh.
@@ -43,20 +49,26 @@ double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int reso
     return static_cast<double>(entries) / static_cast<double>(samples);
 }
 
-int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, std::uint64_t memoryLimit) {
+int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, const BakeOptions& options) {
     const auto count = static_cast<double>(mesh.size());
     int chosen = 0;
-    for (int resolution = 128; resolution >= 16; resolution -= 8) {
+    for (int resolution = options.largestResolution; resolution >= 16; resolution -= 8) {
         chosen = resolution;
-        if (3.0 * resolution * resolution * count > kMostRays) continue;
+        if (3.0 * resolution * resolution * count > options.mostRays) continue;
         const double bytes = count * bytesPerFactor(MatrixStorage::Float) * pilotEntriesPerRow(mesh, rays, resolution);
-        if (bytes <= static_cast<double>(memoryLimit)) break;
+        if (bytes <= static_cast<double>(options.memoryLimit)) break;
     }
     return chosen;
 }
 
+/// What the rays meet that end on backs.
+struct BacksMet {
+    std::string material;  ///< the most frequent one; empty if there is none
+    double unwanted = 1.0; ///< share of these rays that do not end on occluders
+};
+
 /// The material whose black back is met most by rays from the patches that meet most of them.
-std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
+BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
@@ -67,6 +79,7 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
     patches.resize(std::min<std::size_t>(patches.size(), 200));
     const Scene& scene = rays.scene();
     std::vector<double> met(scene.materials.size(), 0.0);
+    double occluded = 0.0;
     constexpr int kResolution = 16;
     RayPacket packet;
     const Hemicube hemicube(mesh, rays, {.resolution = kResolution, .randomRotation = false});
@@ -78,16 +91,19 @@ std::string mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const Form
                     rays.closest(hemicube.viewpoint(patch).origin, packet);
                     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
-                        const std::uint32_t material = scene.polygons[packet.polygon[lane]].material;
-                        if (scene.polygons[packet.polygon[lane]].backMaterial == kNone)
-                            met[material] += static_cast<double>(mesh.area[patch]);
+                        const Polygon& polygon = scene.polygons[packet.polygon[lane]];
+                        if (polygon.backMaterial == kNone)
+                            (isOccluder(scene, polygon) ? occluded : met[polygon.material]) +=
+                                static_cast<double>(mesh.area[patch]);
                     }
                 }
             }
         }
     }
     const auto most = std::max_element(met.begin(), met.end());
-    return *most > 0.0 ? scene.materials[static_cast<std::size_t>(most - met.begin())].name : std::string();
+    if (!(*most > 0.0)) return {{}, 0.0};
+    const double onBacks = std::accumulate(met.begin(), met.end(), 0.0);
+    return {scene.materials[static_cast<std::size_t>(most - met.begin())].name, onBacks / (onBacks + occluded)};
 }
 
 RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
@@ -104,7 +120,11 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     quality.entries = matrix.entryCount();
     quality.bytes = matrix.bytes();
     quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
-    if (quality.backFaceFraction > kBackFaceWarning) quality.backFaceMaterial = mostMetBack(mesh, rays, matrix);
+    if (quality.backFaceFraction > kBackFaceWarning) {
+        const BacksMet met = mostMetBack(mesh, rays, matrix);
+        quality.backFaceFraction *= met.unwanted;
+        quality.backFaceMaterial = met.material;
+    }
     return quality;
 }
 
@@ -113,7 +133,7 @@ void collectWarnings(BakedScene& result) {
     if (result.rows.backFaceFraction > kBackFaceWarning)
         warn(fmt::format(
             "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
-            "or make surfaces two-sided with --two-sided",
+            "or make it two-sided (--two-sided, or \"two_sided\" in an overrides file)",
             100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
     const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);
@@ -124,10 +144,9 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
-BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
     requireLight(scene);
-    BakedScene result;
-    Stopwatch watch;
+    MeshedScene result;
     const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
     progress.begin("mesh", 0);
     result.scene = std::make_shared<Scene>(prepareScene(
@@ -136,11 +155,17 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
+    requireLight(result.mesh);
     progress.end();
+    result.resolution = options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options);
+    return result;
+}
+
+BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+    Stopwatch watch;
+    BakedScene result{meshScene(scene, options, progress)};
     result.seconds.mesh = watch.lap();
 
-    result.resolution =
-        options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options.memoryLimit);
     const Hemicube hemicube(
         result.mesh, *result.rays,
         {.resolution = result.resolution, .randomRotation = options.randomRotation, .seed = options.seed});

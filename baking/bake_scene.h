@@ -18,10 +18,12 @@ namespace lambert {
 /// Everything between a scene and the light at its vertices.
 struct BakeOptions {
     MeshOptions mesh;
-    std::optional<int> resolution; //!< of the hemicubes; none: the largest that keeps rays and memory in bounds
-    bool randomRotation = true;    //!< of the hemicubes
+    std::optional<int> resolution; //!< of the hemicubes; none: the largest that keeps to the three bounds
+    int largestResolution = 128;   //!< when the resolution is chosen; 16 to 4096
+    double mostRays = 1.3e9;       //!< the same, in all: a few minutes on two cores
+    std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< the same, bytes for the form factors
+    bool randomRotation = true;                         //!< of the hemicubes
     std::uint64_t seed = 1;
-    std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< bytes for the form factors, when the resolution is chosen
     JacobiOptions jacobi;
     ReconstructionOptions reconstruction;
 };
@@ -34,32 +36,40 @@ struct BakeSeconds {
 /// How the computed rows keep their identities.
 struct RowQuality {
     double largestClosureError = 0.0; //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
-    double backFaceFraction = 0.0;    //!< of the rays from patches that can receive light, area-weighted
-    std::string backFaceMaterial;     //!< whose back they meet most often; empty if they meet none
-    std::size_t entries = 0;          //!< of the matrix
+    double backFaceFraction =
+        0.0; //!< of the rays from patches that can receive light, area-weighted; occluders are none
+    std::string backFaceMaterial; //!< whose back they meet most often; empty if they meet none
+    std::size_t entries = 0;      //!< of the matrix
     std::size_t bytes = 0;
 };
 
-/// A scene with its light, and what a caller may want to know of how it came about.
-struct BakedScene {
+/// A scene as form factors are computed on it: all but the light.
+struct MeshedScene {
     std::shared_ptr<const Scene> scene; //!< as prepared: welded, joined; polygons as the rays see them
     std::unique_ptr<RayCaster> rays;    //!< of `scene`
     PatchMesh mesh;
-    RadiositySolution solution;
-    BakedMesh baked;
-
-    int resolution = 0;
-    std::uint64_t rayCount = 0;
+    int resolution = 0; //!< of the hemicubes, given or chosen
     PrepareReport prepareReport;
     MeshReport meshReport;
-    RowQuality rows;
-    std::size_t separatedFaces = 0;
-    BakeSeconds seconds;
-    std::vector<std::string> warnings; //!< one line each
 };
 
-/// Prepares, meshes, computes form factors by hemicube, solves, and reconstructs at the vertices. Throws InputError if the
-/// scene has no light, Cancelled.
+/// Prepares and meshes a scene and chooses the resolution. Throws InputError if the scene has no light, Cancelled.
+MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress);
+
+/// A scene with its light, and what a caller may want to know of how it came about.
+struct BakedScene : MeshedScene {
+    RadiositySolution solution{};
+    BakedMesh baked{};
+
+    std::uint64_t rayCount = 0;
+    RowQuality rows{};
+    std::size_t separatedFaces = 0;
+    BakeSeconds seconds{};
+    std::vector<std::string> warnings{}; //!< one line each
+};
+
+/// meshScene, then form factors by hemicube, solution, and reconstruction at the vertices. Throws InputError if the scene
+/// has no light, Cancelled.
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress);
 
 } // namespace lambert

@@ -1,9 +1,6 @@
 #include "baking/baked_mesh.h"
 
-#include <glm/common.hpp>
 #include <glm/ext/scalar_constants.hpp>
-
-#include <algorithm>
 
 namespace lambert {
 
@@ -12,9 +9,32 @@ Rgb shownRadiance(const BakedMesh& mesh, std::size_t vertex, Quantity quantity) 
     return values[vertex] / glm::pi<float>();
 }
 
-bool isEmitter(const BakedMesh& mesh, std::size_t face) {
-    const Rgb& emitted = mesh.materials[mesh.faceMaterials[face]].emittedRadiance;
-    return std::max({emitted.x, emitted.y, emitted.z}) > 0.0F;
+bool isEmitter(const BakedMesh& mesh, std::size_t face) { return !mesh.emitters.empty() && mesh.emitters[face]; }
+
+BakedMesh withoutHoles(const BakedMesh& mesh) {
+    BakedMesh result;
+    result.materials = mesh.materials;
+    std::vector<std::uint32_t> newIndex(mesh.positions.size(), 0);
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        if (!mesh.opacity.empty() && mesh.opacity[face] == 0.0F) continue;
+        result.faces.push_back(mesh.faces[face]);
+        result.faceMaterials.push_back(mesh.faceMaterials[face]);
+        result.emitters.push_back(isEmitter(mesh, face));
+        if (!mesh.opacity.empty()) result.opacity.push_back(mesh.opacity[face]);
+        for (std::size_t k = 0; k < (mesh.isQuad(face) ? 4U : 3U); ++k) newIndex[mesh.faces[face][k]] = 1;
+    }
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        if (newIndex[v] == 0) continue;
+        newIndex[v] = static_cast<std::uint32_t>(result.positions.size());
+        result.positions.push_back(mesh.positions[v]);
+        result.normals.push_back(mesh.normals[v]);
+        result.radiosity.push_back(mesh.radiosity[v]);
+        result.irradiance.push_back(mesh.irradiance[v]);
+    }
+    for (auto& corners : result.faces)
+        for (std::uint32_t& vertex : corners)
+            if (vertex != kNone) vertex = newIndex[vertex];
+    return result;
 }
 
 } // namespace lambert

@@ -20,6 +20,8 @@ struct BakedMesh {
         faces; //!< one per patch, into the above, counter-clockwise; a triangle ends in kNone
     std::vector<std::uint32_t> faceMaterials; //!< #faces, into materials
     std::vector<Material> materials;
+    std::vector<bool> emitters; //!< #faces: the patch emits; or empty: none does
+    std::vector<float> opacity; //!< #faces, as PatchMesh::opacity; or empty: no holes at all
 
     bool isQuad(std::size_t face) const { return faces[face][3] != kNone; }
 };
@@ -30,7 +32,10 @@ enum class Quantity { Radiosity, Irradiance };
 /// The radiance shown at a vertex: B/π or E/π (Rgb, linear).
 Rgb shownRadiance(const BakedMesh& mesh, std::size_t vertex, Quantity quantity);
 
-/// Whether the face's material emits light.
+/// Whether the face emits light, an emission texture considered.
 bool isEmitter(const BakedMesh& mesh, std::size_t face);
+
+/// The mesh without faces that are one hole and vertices that only they use; the rest in order.
+BakedMesh withoutHoles(const BakedMesh& mesh);
 
 } // namespace lambert

@@ -18,12 +18,14 @@ struct FaceValue {
     double area;
 };
 
+/// Without holes.
 double faceArea(const BakedMesh& mesh, std::size_t face) {
     const auto& corners = mesh.faces[face];
     const auto position = [&](std::size_t k) { return glm::dvec3(mesh.positions[corners[k]]); };
     const glm::dvec3 diagonal = position(2) - position(0);
     const glm::dvec3 other = mesh.isQuad(face) ? position(3) - position(1) : position(2) - position(1);
-    return 0.5 * glm::length(glm::cross(diagonal, other));
+    const double opacity = mesh.opacity.empty() ? 1.0 : static_cast<double>(mesh.opacity[face]);
+    return opacity * 0.5 * glm::length(glm::cross(diagonal, other));
 }
 
 double faceValue(const BakedMesh& mesh, std::size_t face, Quantity quantity) {

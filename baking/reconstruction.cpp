@@ -2,12 +2,10 @@
 
 #include "meshing/half_edge_mesh.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace lambert {
 
@@ -35,11 +33,14 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
     BakedMesh baked;
     baked.materials = scene.materials;
     baked.faceMaterials = mesh.material;
+    baked.opacity = mesh.opacity;
+    for (const Rgb& b : mesh.emittedRadiosity) baked.emitters.push_back(b != Rgb(0.0F));
     baked.positions.resize(topology.n_vertices());
     std::vector<RgbSum> irradiance(topology.n_vertices(), RgbSum(0.0));
     std::vector<double> weights(topology.n_vertices(), 0.0);
     std::vector<glm::dvec3> normals(topology.n_vertices(), glm::dvec3(0.0));
-    std::vector<std::uint32_t> materials(topology.n_vertices(), 0);
+    std::vector<RgbSum> reflectance(topology.n_vertices(), RgbSum(0.0));
+    std::vector<RgbSum> emitted(topology.n_vertices(), RgbSum(0.0));
     baked.faces.reserve(mesh.size());
     for (const auto face : topology.faces()) {
         const auto patch = static_cast<std::size_t>(face.idx());
@@ -57,17 +58,17 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
             irradiance[index] += weight * openness * solution.irradiance[patch];
             weights[index] += weight * openness;
             normals[index] += weight * glm::dvec3(mesh.normal[patch]);
-            materials[index] = mesh.material[patch];
+            reflectance[index] += weight * openness * RgbSum(mesh.reflectance[patch]);
+            emitted[index] += weight * openness * RgbSum(mesh.emittedRadiosity[patch]);
             baked.positions[index] = position;
         }
         baked.faces.push_back(corners);
     }
     for (std::size_t i = 0; i < baked.positions.size(); ++i) {
-        const Material& material = scene.materials[materials[i]];
-        const RgbSum e = weights[i] > 0.0 ? irradiance[i] / weights[i] : RgbSum(0.0);
-        const Rgb emitted = std::numbers::pi_v<float> * material.emittedRadiance;
+        const double share = weights[i] > 0.0 ? 1.0 / weights[i] : 0.0;
+        const RgbSum e = share * irradiance[i];
         baked.irradiance.emplace_back(e);
-        baked.radiosity.push_back(emitted + material.reflectance * Rgb(e));
+        baked.radiosity.emplace_back(share * emitted[i] + share * reflectance[i] * e);
         const double length = glm::length(normals[i]);
         baked.normals.push_back(length > 0.0 ? glm::vec3(normals[i] / length) : glm::vec3(0.0F, 0.0F, 1.0F));
     }

@@ -13,7 +13,8 @@ struct ReconstructionOptions {
 };
 
 /// Light at the vertices as the mean of the patches around a vertex on its smoothing side, weighted by area and by the
-/// angle at the vertex. A patch inside another object counts as little as it sees of anything but back faces.
+/// angle at the vertex; holes have no area. A patch inside another object counts as little as it sees of anything but back
+/// faces. Radiosity is B_e + ρ E with all three averaged in this way, so that textures appear as sharp as the patches.
 ///
 /// Face i of the result is patch i of the mesh. `separatedFaces`, if given, becomes the number of patches that could not
 /// be connected to their neighbours.

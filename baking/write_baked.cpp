@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <span>
@@ -27,8 +28,22 @@ void requireFinite(std::span<const glm::vec3> values, const char* what, const st
 void writeObj(const BakedMesh& mesh, const std::filesystem::path& path, const BakeOutputOptions& options) {
     std::filesystem::path materials = path;
     materials.replace_extension(".mtl");
-    writeWholeFile(materials, encodeMtl(mesh));
-    writeWholeFile(path, encodeObj(mesh, options, materials.filename().string()));
+    writeWholeFiles(std::array{FileContent{materials, encodeMtl(mesh)},
+                               FileContent{path, encodeObj(mesh, options, materials.filename().string())}});
+}
+
+void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat format,
+           const BakeOutputOptions& options) {
+    switch (format) {
+    case BakedFormat::Glb:
+        return writeWholeFile(path, encodeGltf(mesh, options, true));
+    case BakedFormat::Gltf:
+        return writeWholeFile(path, encodeGltf(mesh, options, false));
+    case BakedFormat::Ply:
+        return writeWholeFile(path, encodePly(mesh, options));
+    case BakedFormat::Obj:
+        return writeObj(mesh, path, options);
+    }
 }
 
 } // namespace
@@ -52,16 +67,10 @@ void writeBaked(const BakedMesh& mesh, const std::filesystem::path& path, BakedF
     requireFinite(mesh.normals, "normal", path);
     requireFinite(mesh.radiosity, "radiosity", path);
     requireFinite(mesh.irradiance, "irradiance", path);
-    switch (format) {
-    case BakedFormat::Glb:
-        return writeWholeFile(path, encodeGltf(mesh, options, true));
-    case BakedFormat::Gltf:
-        return writeWholeFile(path, encodeGltf(mesh, options, false));
-    case BakedFormat::Ply:
-        return writeWholeFile(path, encodePly(mesh, options));
-    case BakedFormat::Obj:
-        return writeObj(mesh, path, options);
-    }
+    if (mesh.opacity.empty())
+        write(mesh, path, format, options);
+    else
+        write(withoutHoles(mesh), path, format, options);
 }
 
 } // namespace lambert

@@ -19,7 +19,8 @@ struct BakeOutputOptions {
     std::string version;                     //!< of Lambert, named as the generator
 };
 
-/// Writes the mesh with its light, whole or not at all, and with the same bytes for the same mesh and options.
+/// Writes the mesh with its light, whole or not at all, and with the same bytes for the same mesh and options. Faces that are
+/// one hole are left out; those that are partly holes are written whole.
 ///
 /// - Glb, Gltf (buffer embedded): one mesh, one primitive per material used, unlit; quads are split. `_RADIOSITY` = B per
 ///   m², linear, unclamped; `_IRRADIANCE` = E if that is the quantity; `COLOR_0` = linear display colour in [0, 1].

@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/terminal_text.h"
+#include "cli/validators.h"
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -9,44 +10,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 namespace lambert {
 
 namespace {
 
-/// Like CLI::Range, but NaN is outside too, and so is the negative number that an unsigned option would wrap
-/// around.
-CLI::Validator between(double lowest, double highest) {
-    return {[=](const std::string& text) {
-                double value = 0.0;
-                if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
-                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest, highest);
-                return std::string();
-            },
-            "", ""};
+/// What --quality stands for, where no other option says otherwise.
+struct Quality {
+    const char* name;
+    double refinement; //!< see MeshOptions
+    int resolution;    //!< the largest, see BakeOptions
+    double rays;       //!< the most
+    double tolerance;
+};
+
+constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3}, Quality{"normal", 1.0, 128, 1.3e9, 1e-4},
+                                Quality{"high", 4.0, 192, 1.2e10, 1e-5}};
+
+const Quality& qualityOf(const std::string& name) {
+    return *std::find_if(kQualities.begin(), kQualities.end(), [&](const Quality& q) { return q.name == name; });
 }
 
 } // namespace
 
-void addSceneArguments(CLI::App& command, SceneArguments& a) {
-    command.add_option("scene", a.path, "Scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
-    command.add_option("--unit", a.unit, "Metres per unit of the file (OBJ only; glTF is in metres) [1]")
-        ->type_name("METRES")
-        ->group("Scene");
-    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
-    command.add_option("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr")
-        ->type_name("MATERIAL=r,g,b")
-        ->group("Scene");
-    command.add_option("--reflectance", a.reflectance, "Diffuse reflectance of a material, 0 to 0.99")
-        ->type_name("MATERIAL=r,g,b")
-        ->group("Scene");
-}
-
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
+    command
+        .add_option("--quality", a.quality,
+                    "preview, normal or high: patches, resolution and tolerance, unless given [normal]")
+        ->check(CLI::IsMember({"preview", "normal", "high"}))
+        ->group("Mesh");
     auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
                        ->type_name("METRES")
                        ->group("Mesh");
@@ -143,51 +139,11 @@ glm::vec3 parseVector(const std::string& text, const std::string& option) {
     return result;
 }
 
-namespace {
-
-/// Materials named on the command line, with their values.
-void overrideMaterials(Scene& scene, const std::vector<std::string>& settings, const std::string& option, float largest,
-                       const std::function<void(Material&, const Rgb&)>& apply) {
-    for (const std::string& setting : settings) {
-        const std::size_t separator = setting.rfind('=');
-        if (separator == std::string::npos)
-            throw UsageError(fmt::format("{}: found \"{}\", expected MATERIAL=r,g,b", option, setting));
-        const std::string name = setting.substr(0, separator);
-        const Rgb value = parseVector(setting.substr(separator + 1), option);
-        if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
-            throw UsageError(
-                fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
-        bool found = false;
-        for (Material& material : scene.materials) {
-            if (material.name != name) continue;
-            apply(material, value);
-            found = true;
-        }
-        if (!found) {
-            std::vector<std::string> names;
-            for (const Material& material : scene.materials) names.push_back(material.name);
-            throw UsageError(
-                fmt::format("{}: the scene has no material \"{}\", but {}", option, name, fmt::join(names, ", ")));
-        }
-    }
-}
-
-} // namespace
-
-ReadResult readScene(const SceneArguments& a) {
-    if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
-        throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    ReadResult result = readScene(a.path, {a.unit.value_or(1.0), a.twoSided});
-    overrideMaterials(result.scene, a.emit, "--emit", 1e30F,
-                      [](Material& m, const Rgb& value) { m.emittedRadiance = value; });
-    overrideMaterials(result.scene, a.reflectance, "--reflectance", 0.99F,
-                      [](Material& m, const Rgb& value) { m.reflectance = value; });
-    return result;
-}
-
 BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
+    const Quality& quality = qualityOf(a.quality);
     options.mesh.patchLength = a.patchLength;
+    options.mesh.refinement = quality.refinement;
     if (a.patchLength && !(*a.patchLength > 0.0))
         throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
     options.mesh.patches = a.patches;
@@ -196,10 +152,12 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
         throw UsageError(
             fmt::format("--resolution: found {}, allowed are even numbers from 16 to 4096", *a.resolution));
     options.resolution = a.resolution;
+    options.largestResolution = quality.resolution;
+    options.mostRays = quality.rays;
     options.randomRotation = a.rotation == "random";
     options.seed = run.seed;
     options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
-    options.jacobi.tolerance = a.tolerance;
+    options.jacobi.tolerance = a.tolerance.value_or(quality.tolerance);
     options.jacobi.bounces = a.bounces;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
@@ -237,6 +195,12 @@ void checkCamera(const PictureArguments& a, const Scene& scene) {
     if (!a.path.empty() && !a.camera.empty()) namedCamera(a.camera, scene);
 }
 
+double pictureRays(const PictureArguments& a) {
+    if (a.path.empty()) return 0.0;
+    const auto [width, height] = parseSize(a.size);
+    return static_cast<double>(width) * height * a.samples * a.samples;
+}
+
 void checkPicture(const PictureArguments& a) {
     if (a.path.empty()) return;
     imageFormatOf(a.path);
@@ -269,5 +233,12 @@ void logLine(const RunArguments& run, const std::string& line) {
 }
 
 void warnLine(const std::string& line) { writeLog("warning: " + line + "\n"); }
+
+void logReport(const RunArguments& run, const ReadReport& report) {
+    if (!report.overrides.file.empty())
+        logLine(run, oneLine(fmt::format("{}: changes the scene (--no-overrides ignores it)",
+                                         report.overrides.file.string())));
+    for (const std::string& warning : report.warnings) warnLine(oneLine(warning));
+}
 
 } // namespace lambert

@@ -2,6 +2,7 @@
 
 #include "baking/bake_scene.h"
 #include "baking/write_baked.h"
+#include "cli/scene_arguments.h"
 #include "rendering/camera_rays.h"
 #include "scene/scene_reader.h"
 
@@ -16,15 +17,8 @@ namespace lambert {
 
 /// What the user typed, by topic. Every command adds the groups that apply to it.
 
-struct SceneArguments {
-    std::filesystem::path path;
-    std::optional<double> unit;
-    bool twoSided = false;
-    std::vector<std::string> emit;        //!< MATERIAL=r,g,b
-    std::vector<std::string> reflectance; //!< MATERIAL=r,g,b
-};
-
 struct TransportArguments {
+    std::string quality = "normal";
     std::optional<double> patchLength;
     std::optional<std::size_t> patches;
     bool wholeContacts = false;
@@ -34,7 +28,7 @@ struct TransportArguments {
     std::string rotation = "random";
     double memoryLimit = 8.0 * 1073741824.0;
     std::string solver = "jacobi";
-    double tolerance = 1e-4;
+    std::optional<double> tolerance;
     int bounces = 0;
 };
 
@@ -53,13 +47,9 @@ struct PictureArguments {
     int samples = 4;
 };
 
-void addSceneArguments(CLI::App& command, SceneArguments& arguments);
 void addTransportArguments(CLI::App& command, TransportArguments& arguments);
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addPictureArguments(CLI::App& command, PictureArguments& arguments);
-
-/// Reads the scene and applies --emit and --reflectance. Throws InputError, UsageError.
-ReadResult readScene(const SceneArguments& arguments);
 
 /// Throws UsageError.
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
@@ -75,6 +65,9 @@ struct Picture {
 /// The picture's size and camera: the named one, the one by --eye, the scene's first, or a default one.
 Picture picture(const PictureArguments& arguments, const Scene& scene, const RayCaster& rays);
 
+/// Rays that the picture takes; 0 without one. Throws UsageError.
+double pictureRays(const PictureArguments& arguments);
+
 /// Check what can be checked of a picture before any work, and once the scene is read. Throw UsageError.
 void checkPicture(const PictureArguments& arguments);
 void checkCamera(const PictureArguments& arguments, const Scene& scene);
@@ -88,5 +81,8 @@ void applyThreads(const RunArguments& run);
 /// Log lines on stderr, unless --quiet.
 void logLine(const RunArguments& run, const std::string& line);
 void warnLine(const std::string& line);
+
+/// Logs what a scene was changed by, and its warnings.
+void logReport(const RunArguments& run, const ReadReport& report);
 
 } // namespace lambert

@@ -4,6 +4,8 @@
 #include "core/process.h"
 #include "core/whole_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -24,20 +26,43 @@ Json cameraJson(const Picture& picture) {
             {"height", picture.height}};
 }
 
+/// How the scene was read and what was changed of it, by options or by the overrides file.
+Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
+    Json emit = Json::array(), reflectance = Json::array(), twoSided = Json::object();
+    const auto setting = [](const std::string& name, const Rgb& c) {
+        return fmt::format("{}={},{},{}", name, c.x, c.y, c.z);
+    };
+    for (const MaterialOverride& change : overrides.changes.materials) {
+        if (change.emittedRadiance) emit.push_back(setting(change.name, *change.emittedRadiance));
+        if (change.reflectance) reflectance.push_back(setting(change.name, *change.reflectance));
+        if (change.twoSided) twoSided[change.name] = *change.twoSided;
+    }
+    Json exclude = Json::array(), occludeOnly = Json::array();
+    for (const NodeOverride& change : overrides.changes.nodes)
+        (change.treatment == NodeOverride::Treatment::Exclude ? exclude : occludeOnly).push_back(change.name);
+    return {{"unit", overrides.metresPerUnit},
+            {"two_sided", overrides.twoSided},
+            {"two_sided_materials", twoSided},
+            {"emit", emit},
+            {"reflectance", reflectance},
+            {"exclude", exclude},
+            {"occlude_only", occludeOnly},
+            {"overrides", overrides.file.empty() ? Json(nullptr) : Json(overrides.file.string())},
+            {"strict", scene.strict},
+            {"allow_outside_files", scene.allowOutsideFiles}};
+}
+
 Json optionsJson(const BakeReportInput& in) {
     const BakedScene& baked = in.baked;
-    Json options;
-    options["unit"] = in.scene.unit.value_or(1.0);
-    options["two_sided"] = in.scene.twoSided;
-    options["emit"] = in.scene.emit;
-    options["reflectance"] = in.scene.reflectance;
+    Json options = sceneOptionsJson(in.scene, in.read.overrides);
     const double length = baked.meshReport.patchLength;
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
     options["resolution"] = baked.resolution;
     options["rotation"] = in.transport.rotation;
-    options["tolerance"] = in.transport.tolerance;
+    options["quality"] = in.transport.quality;
+    options["tolerance"] = bakeOptions(in.transport, in.run).jacobi.tolerance;
     options["bounces"] = in.transport.bounces;
     options["threads"] = threadCount();
     return options;

@@ -33,7 +33,7 @@ struct BakeReportInput {
     double readSeconds = 0.0, writeSeconds = 0.0, totalSeconds = 0.0;
 };
 
-/// The report of one bake; keys are documented in docs/report.md.
+/// The report of one bake; keys are documented in docs/output.md.
 nlohmann::ordered_json bakeReport(const BakeReportInput& input);
 
 /// Writes a report to a file, whole.

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/failure.h"
 #include "cli/terminal_text.h"
 
 #include <fcntl.h>
@@ -7,7 +8,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <new>
 
 namespace {
 
@@ -65,11 +65,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run(argc, argv);
-    } catch (const lambert::Error& error) {
-        return fail(error.exitCode(), error.what());
-    } catch (const std::bad_alloc&) {
-        return fail(ExitCode::System, "not enough memory");
-    } catch (const std::exception& error) {
-        return fail(ExitCode::System, error.what());
+    } catch (...) {
+        const lambert::Failure failure = lambert::currentFailure();
+        return fail(failure.code, failure.message);
     }
 }

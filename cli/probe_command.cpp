@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
@@ -98,7 +99,7 @@ std::string table(const std::vector<ProbePoint>& points, const std::vector<Probe
 
 ExitCode probe(const ProbeArguments& a) {
     const BakeOptions options = bakeOptions(a.transport, a.run);
-    std::vector<std::filesystem::path> inputs = filesOfScene(a.scene.path);
+    std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
     inputs.push_back(a.points);
     checkTargets(std::array{a.output, a.run.json}, inputs);
     applyThreads(a.run);
@@ -106,9 +107,9 @@ ExitCode probe(const ProbeArguments& a) {
     const InterruptGuard interrupt(progress);
     const Stopwatch total;
     const std::vector<ProbePoint> points = readPoints(a.points);
-    const ReadResult read = readScene(a.scene);
+    const ReadResult read = readScene(a.scene, &progress);
     const double readSeconds = total.seconds();
-    for (const std::string& warning : read.report.warnings) warnLine(oneLine(warning));
+    logReport(a.run, read.report);
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
     const std::vector<ProbeReading> readings = probeIrradiance(baked, points);

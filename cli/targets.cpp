@@ -1,15 +1,9 @@
 #include "cli/targets.h"
 
-#include "baking/write_baked.h"
 #include "core/error.h"
 #include "core/whole_file.h"
-#include "scene/input_file.h"
-#include "scene/obj_lines.h"
 
 #include <fmt/format.h>
-
-#include <string>
-#include <string_view>
 
 namespace lambert {
 
@@ -27,21 +21,6 @@ bool sameFile(const fs::path& a, const fs::path& b) {
 }
 
 } // namespace
-
-std::vector<fs::path> filesOfScene(const fs::path& scene) {
-    std::vector<fs::path> files{scene};
-    if (formatOf(scene) != BakedFormat::Obj) return files;
-    const std::string text = readInputFile(scene);
-    ObjLines lines(text);
-    while (const auto line = lines.next()) {
-        if (line->keyword != "mtllib") continue;
-        files.push_back(scene.parent_path() / line->rest); // one name with spaces in it, or several names
-        std::string_view rest = line->rest;
-        for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest))
-            files.push_back(scene.parent_path() / word);
-    }
-    return files;
-}
 
 void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> inputs) {
     for (std::size_t i = 0; i < targets.size(); ++i) {

@@ -9,12 +9,19 @@ namespace lambert {
 namespace {
 
 constexpr std::chrono::milliseconds kUpdateInterval{100};
+constexpr std::size_t kLongestTitle = 24; ///< a line that wraps could not be cleared
 
 } // namespace
 
 TerminalProgress::TerminalProgress(bool quiet) : visible_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
 TerminalProgress::~TerminalProgress() { clearLine(); }
+
+void TerminalProgress::setTitle(const std::string& title) {
+    const std::lock_guard lock(mutex_);
+    title_ = title.size() > kLongestTitle ? title.substr(0, kLongestTitle - 3) + "..." : title;
+    if (!title_.empty()) title_ += ": ";
+}
 
 void TerminalProgress::onBegin(std::string_view stage, std::uint64_t /*total*/) {
     const std::lock_guard lock(mutex_);
@@ -33,7 +40,7 @@ void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
     const std::lock_guard lock(mutex_);
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double rate = static_cast<double>(done) / seconds;
-    std::string line = fmt::format("\r{:<14} ", stage_);
+    std::string line = fmt::format("\r{}{:<14} ", title_, stage_);
     if (total > 0) {
         constexpr int kWidth = 24;
         const double part = static_cast<double>(done) / static_cast<double>(total);

@@ -15,6 +15,9 @@ public:
     explicit TerminalProgress(bool quiet);
     ~TerminalProgress() override;
 
+    /// What stands before the stage from now on, such as "[3/12] kitchen.glb"; to be called between stages.
+    void setTitle(const std::string& title);
+
 protected:
     void onBegin(std::string_view stage, std::uint64_t total) override;
     void onAdvance(std::uint64_t done, std::uint64_t total) override;
@@ -26,7 +29,7 @@ private:
 
     bool visible_;
     std::mutex mutex_;
-    std::string stage_;
+    std::string title_, stage_;
     Clock::time_point start_;
     std::atomic<Clock::duration::rep> nextUpdate_{0};
     bool lineShown_ = false;

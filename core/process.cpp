@@ -1,13 +1,29 @@
 #include "core/process.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
+
+#include <fstream>
+#include <limits>
+#include <string>
 
 namespace lambert {
 
 std::uint64_t peakMemoryBytes() {
+    // Unlike getrusage, this peak can be reset.
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
+        std::uint64_t kibibytes = 0;
+        if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+    }
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+void resetPeakMemory() {
+    ::malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << "5"; // proc(5): resets VmHWM to what is resident now
 }
 
 } // namespace lambert

@@ -4,7 +4,11 @@
 
 namespace lambert {
 
-/// Largest resident memory of this process so far, in bytes.
+/// Largest resident memory of this process, in bytes: since the last resetPeakMemory(), or since its start.
 std::uint64_t peakMemoryBytes();
+
+/// Returns freed memory to the system and starts the peak afresh, so that the next one is that of the work to come. Where
+/// the system does not allow it, the old peak stays.
+void resetPeakMemory();
 
 } // namespace lambert

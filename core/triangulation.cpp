@@ -7,9 +7,16 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
 namespace lambert {
 
 namespace {
+
+/// Every edge at a point costs a turn around all edges there, so that the time grows with the square of this.
+constexpr std::size_t kMostReturns = 1000;
 
 /// How often the border goes around a face, counter-clockwise; and how much that changes from here across each edge.
 struct Winding {
@@ -32,16 +39,17 @@ using Face = Triangulation::Face_handle;
 std::optional<std::vector<Vertex>> insertPoints(Triangulation& triangulation, std::span<const glm::dvec2> points,
                                                 std::size_t borderCount) {
     std::vector<Vertex> vertices(points.size());
+    std::vector<std::size_t> returns(borderCount, 0);
     Face hint;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t before = triangulation.number_of_vertices();
         vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
         if (triangulation.number_of_vertices() != before) {
             vertices[i]->info() = static_cast<std::uint32_t>(i);
-        } else if (i >= borderCount) {
+            hint = vertices[i]->face(); // not that of an older one, which may be a hub's and lie on its far side
+        } else if (i >= borderCount || ++returns[vertices[i]->info()] > kMostReturns) {
             return std::nullopt;
         }
-        hint = vertices[i]->face();
     }
     for (std::size_t i = 0; i < borderCount; ++i)
         if (vertices[i] == vertices[(i + 1) % borderCount]) return std::nullopt;
@@ -118,6 +126,48 @@ triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
         if (winding == 1)
             triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
     }
+    return triangles;
+}
+
+std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::span<const glm::dvec2> points,
+                                                                          std::span<const std::size_t> loopSizes) {
+    Triangulation triangulation;
+    std::vector<std::uint32_t> first(points.size()); // of the points at the same place
+    std::vector<Vertex> vertices(points.size());
+    Face hint;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::size_t before = triangulation.number_of_vertices();
+        vertices[i] = triangulation.insert({points[i].x, points[i].y}, hint);
+        if (triangulation.number_of_vertices() != before) vertices[i]->info() = static_cast<std::uint32_t>(i);
+        first[i] = vertices[i]->info();
+        hint = vertices[i]->face();
+    }
+    if (triangulation.dimension() < 2) return std::nullopt;
+
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> isBorder; // edges that were given an odd number of times
+    std::size_t begin = 0;
+    for (const std::size_t size : loopSizes) {
+        for (std::size_t k = 0; k < size; ++k) {
+            const auto edge = std::minmax(first[begin + k], first[begin + (k + 1) % size]);
+            if (edge.first != edge.second) isBorder[edge] ^= true;
+        }
+        begin += size;
+    }
+    try {
+        for (const auto& [edge, odd] : isBorder)
+            if (odd) triangulation.insert_constraint(vertices[edge.first], vertices[edge.second]);
+    } catch (const Triangulation::Intersection_of_constraints_exception&) {
+        return std::nullopt;
+    }
+    for (const Face face : triangulation.all_face_handles())
+        for (int edge = 0; edge < 3; ++edge)
+            face->info().change[static_cast<std::size_t>(edge)] = face->is_constrained(edge) ? 1 : 0;
+    spreadWinding(triangulation); // counts edges crossed: both ways are one more
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const Face face : triangulation.finite_face_handles())
+        if (face->info().number % 2 != 0)
+            triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    if (triangles.empty()) return std::nullopt;
     return triangles;
 }
 

@@ -19,9 +19,19 @@ namespace lambert {
 ///
 /// Returns counter-clockwise triangles of point indices that cover the polygon once, or nothing if the border or the
 /// constraints cross themselves or each other, if the border covers something twice or clockwise, or if two points
-/// coincide that are consecutive or not both on the border.
+/// coincide that are consecutive or not both on the border, or more than 1,000.
 std::optional<std::vector<std::array<std::uint32_t, 3>>>
 triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
                    std::span<const std::array<std::uint32_t, 2>> constraints = {});
+
+/// Constrained Delaunay triangulation of a polygon with holes.
+///
+/// The loops stand in `points` one after the other, `loopSizes` points each, every last point joined to the loop's first.
+/// Inside is what an odd number of loop edges separates from infinity: holes may be given in either direction, loops may
+/// touch at points, and an edge that is given twice (the seam by which a loop takes in a hole) counts as none.
+///
+/// Returns counter-clockwise triangles of point indices, or nothing if edges cross or nothing is inside.
+std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::span<const glm::dvec2> points,
+                                                                          std::span<const std::size_t> loopSizes);
 
 } // namespace lambert

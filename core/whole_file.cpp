@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <fstream>
 
 namespace lambert {
@@ -20,48 +21,62 @@ namespace {
     throw SystemError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(error)));
 }
 
-fs::path temporaryName(const fs::path& path) {
-    // Short, as the target's own name may be as long as a name can be. The extension stays last: image libraries choose
-    // the format by it.
-    fs::path name = fmt::format(".lambert-{}.tmp", ::getpid());
-    name += path.extension();
-    return path.parent_path() / name;
-}
+/// A new content on its way to replace a file: removed again unless committed.
+class Replacement {
+public:
+    /// `number` tells apart what one process replaces at one time. The temporary name is short, as the target's own name may
+    /// be as long as a name can be.
+    explicit Replacement(const fs::path& path, std::size_t number = 0)
+        : path_(path), temporary_(path.parent_path() / fmt::format(".lambert-{}-{}.tmp", ::getpid(), number)) {}
+    ~Replacement() {
+        std::error_code ignored;
+        if (!committed_) fs::remove(temporary_, ignored);
+    }
+    Replacement(const Replacement&) = delete;
+    Replacement& operator=(const Replacement&) = delete;
 
-void flushToDisk(const fs::path& temporary, const fs::path& path) {
-    const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) fail(path, errno);
-    const int result = ::fsync(file);
-    const int error = errno;
-    ::close(file);
-    if (result != 0) fail(path, error);
-}
+    void write(std::string_view content) const {
+        errno = 0;
+        std::ofstream file(temporary_, std::ios::binary);
+        file.write(content.data(), static_cast<std::streamsize>(content.size()));
+        file.close();
+        if (!file) fail(path_, errno != 0 ? errno : EIO);
+        flush();
+    }
+
+    void commit() {
+        std::error_code error;
+        fs::rename(temporary_, path_, error);
+        if (error) fail(path_, error.value());
+        committed_ = true;
+    }
+
+private:
+    void flush() const {
+        const int file = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+        if (file < 0) fail(path_, errno);
+        const int result = ::fsync(file);
+        const int error = errno;
+        ::close(file);
+        if (result != 0) fail(path_, error);
+    }
+
+    fs::path path_, temporary_;
+    bool committed_ = false;
+};
 
 } // namespace
 
-void writeWholeFile(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-    const fs::path temporary = temporaryName(path);
-    try {
-        write(temporary);
-        flushToDisk(temporary, path);
-        std::error_code error;
-        fs::rename(temporary, path, error);
-        if (error) fail(path, error.value());
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw;
-    }
+void writeWholeFile(const fs::path& path, std::string_view content) {
+    Replacement replacement(path);
+    replacement.write(content);
+    replacement.commit();
 }
 
-void writeWholeFile(const fs::path& path, std::string_view content) {
-    writeWholeFile(path, [&](const fs::path& temporary) {
-        errno = 0;
-        std::ofstream file(temporary, std::ios::binary);
-        file.write(content.data(), static_cast<std::streamsize>(content.size()));
-        file.close();
-        if (!file) fail(path, errno != 0 ? errno : EIO);
-    });
+void writeWholeFiles(std::span<const FileContent> files) {
+    std::deque<Replacement> replacements;
+    for (const FileContent& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
+    for (Replacement& replacement : replacements) replacement.commit();
 }
 
 void requireWritable(const fs::path& path) {

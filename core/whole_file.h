@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
-#include <functional>
+#include <span>
+#include <string>
 #include <string_view>
 
 namespace lambert {
@@ -12,10 +12,14 @@ namespace lambert {
 /// untouched if anything fails.
 void writeWholeFile(const std::filesystem::path& path, std::string_view content);
 
-/// The same for a library that insists on opening the file itself: `write` is given the temporary name, which
-/// keeps the extension of `path`. What `write` throws is passed on, after the temporary file is removed.
-void writeWholeFile(const std::filesystem::path& path,
-                    const std::function<void(const std::filesystem::path& temporary)>& write);
+struct FileContent {
+    std::filesystem::path path;
+    std::string content;
+};
+
+/// The same for files that belong together (of different names): all are on the disk under temporary names before the first
+/// old one is replaced, so that a disk that fills up leaves every old file as it was.
+void writeWholeFiles(std::span<const FileContent> files);
 
 /// Throws SystemError if `path` cannot become a file (its folder is missing or not writable, or it is a
 /// folder itself): to be called before hours of work, not after.

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes the scenes of this folder: data/generate.py [FOLDER] (default: the folder of this file).
 
-Running it again gives the same bytes. Python's standard library only. Lengths are metres, y is up where there is an up.
+Running it again gives the same bytes. (classic_room.mgf and what it includes are written by hand: they show what only MGF
+can say.) Python's standard library only. Lengths are metres, y is up where there is an up.
 Faces are counter-clockwise seen from their front, which is the side that reflects and emits:
 rooms face inwards, objects face outwards and are closed.
 """
@@ -9,7 +10,11 @@ import math
 import sys
 from pathlib import Path
 
-from scene_files import Camera, Material, Node, Scene, rounded, write_gltf, write_obj
+from polygon_files import write_ply, write_stl
+from scene_files import (Camera, Image, Mapping, Material, Node, Scene, rounded, write_gltf, write_mgf,
+                         write_obj)
+
+WRITERS = {"gltf": write_gltf, "obj": write_obj, "ply": write_ply, "stl": write_stl, "mgf": write_mgf}
 
 # ---- Shapes
 
@@ -231,19 +236,76 @@ def table_room():
                  materials, meshes, nodes, Camera((4.85, 1.65, 3.8), (2.1, .85, 1.6), math.radians(55), 1.333333))
 
 
+# ---- Images on surfaces
+
+def image(width, height, channels, colour):
+    """`colour(x, y)` is a texel's values, 0 to 255."""
+    texels = (colour(x, y) for y in range(height) for x in range(width))
+    return Image(width, height, channels, bytes(value for texel in texels for value in texel))
+
+
+def in_leaf(x, y):
+    """A leaf with lobes and holes, in the unit square."""
+    angle, radius = math.atan2(y - .5, x - .5), math.hypot(x - .5, y - .5)
+    hole = any(math.hypot(x - a, y - b) < .07 for a, b in ((.35, .4), (.62, .36), (.55, .68)))
+    return radius < .36 + .12 * math.cos(5 * angle) and not hole
+
+
+def textured_images():
+    def plaster(x, y):  # a checker over a gradient
+        shade = 70 + 160 * y // 47
+        return (shade, shade, 230) if (x // 8 + y // 8) % 2 else (240, shade, 60)
+
+    def tile(x, y):
+        return (90, 88, 84) if x == 0 or y == 0 else (176, 96, 60) if (x < 16) == (y < 16) else (222, 206, 176)
+
+    def screen(x, y):  # bars
+        return ((255, 255, 255), (255, 220, 0), (0, 200, 255), (0, 0, 0))[x // 8] if 2 <= y < 14 else (0, 0, 0)
+
+    def leaf(x, y):
+        inside = in_leaf((x + .5) / 64, (y + .5) / 64)
+        return (70, 150, 50, 255) if inside else (70, 150, 50, 0)
+    return {"textured_room_plaster.png": image(96, 48, 3, plaster), "textured_room_tile.png": image(32, 32, 3, tile),
+            "textured_room_screen.png": image(32, 16, 3, screen), "textured_room_leaf.png": image(64, 64, 4, leaf)}
+
+
+def textured_room():
+    names = {"y0": "floor", "z0": "plaster"}
+    room = box((0, 0, 0), (3, 2.4, 3), lambda side: names.get(side, "wall"), inward=True)
+    screen = box((2.96, .7, 1), (3, 1.5, 2.4), lambda side: "screen" if side == "x0" else "frame")
+    lamp = box((1.4, 2.35, 1.4), (1.6, 2.4, 1.6), lambda side: "lamp" if side == "y0" else "frame")
+    leaf = [("leaf", [(.9, 1.3, 1), (.9, 1.3, 2), (1.9, 1.3, 2), (1.9, 1.3, 1)])]
+    materials = {
+        "wall": Material((.7, .7, .7)), "frame": Material((.2, .2, .2)), "lamp": Material((.7, .7, .7), (60, 55, 45)),
+        "plaster": Material((.9, .9, .9), kd_image="textured_room_plaster.png",
+                            mapping=Mapping((1 / 3, 0, 0, 0), (0, -1 / 2.4, 0, 1))),
+        "floor": Material((.9, .9, .9), kd_image="textured_room_tile.png",  # a tile of .6 m, turned by 30 degrees
+                          mapping=Mapping((1.44337567, 0, .83333333, 0), (-.83333333, 0, 1.44337567, 0))),
+        "screen": Material((.05, .05, .05), (2, 2, 2), ke_image="textured_room_screen.png",
+                           mapping=Mapping((0, 0, 1 / 1.4, -1 / 1.4), (0, -1 / .8, 0, 1.5 / .8))),
+        "leaf": Material((1, 1, 1), kd_image="textured_room_leaf.png", cutout=True,
+                         mapping=Mapping((1, 0, 0, -.9), (0, 0, 1, -1)))}
+    meshes = {"room": [room], "screen": [screen], "lamp": [lamp], "leaf": [leaf]}
+    return Scene("textured_room",
+                 ["Metres. A closed room: a plastered wall, a floor of tiles that repeat, a screen that emits an image,",
+                  "and under a small lamp a leaf that is cut out of a square by the opacity of its image."],
+                 materials, meshes, [Node(name, name) for name in meshes],
+                 Camera((2.7, 1.9, 2.85), (1.2, .75, 1), math.radians(62), 1.333333), textured_images())
+
+
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
-    return [(cornell_box(), both), (furnace_box(), both), (table_room(), both),
-            *((case, ("obj",)) for case in analytic_cases())]
+    return [(cornell_box(), (*both, "mgf")), (furnace_box(), (*both, "ply", "stl")), (table_room(), (*both, "mgf")),
+            (textured_room(), both),
+            *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
 
 
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
-    writers = {"gltf": write_gltf, "obj": write_obj}
     for scene, formats in scenes():
         for file_format in formats:
-            writers[file_format](scene, folder)
+            WRITERS[file_format](scene, folder)
 
 
 if __name__ == "__main__":

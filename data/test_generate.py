@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import generate
-from scene_files import placed, write_gltf, write_obj
+from scene_files import chromaticity, placed
 
 FOLDER = Path(__file__).parent
 SCENES = {scene.name: scene for scene, _ in generate.scenes()}
@@ -90,7 +90,7 @@ def read_obj(path):
         elif key == "usemtl":
             material = values[0]
         elif key == "f":
-            faces.append((material, [vertices[int(v) - 1] for v in values]))
+            faces.append((material, [vertices[int(v.split("/")[0]) - 1] for v in values]))
     return faces
 
 
@@ -126,7 +126,7 @@ class Files(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for scene, formats in generate.scenes():
                 for name in formats:
-                    {"gltf": write_gltf, "obj": write_obj}[name](scene, Path(folder))
+                    generate.WRITERS[name](scene, Path(folder))
             for path in Path(folder).iterdir():
                 self.assertEqual(path.read_bytes(), (FOLDER / path.name).read_bytes(), path.name)
 
@@ -149,6 +149,19 @@ class Files(unittest.TestCase):
             for material in scene.materials:
                 for a, b in zip(found[0][material], found[1][material]):
                     self.assertAlmostEqual(a, b, delta=1e-5, msg=f"{scene.name} {material}")  # glTF: single precision
+
+
+class MgfColours(unittest.TestCase):
+    def test_grey_is_the_equal_energy_white(self):
+        for value in chromaticity((.7, .7, .7)):
+            self.assertAlmostEqual(value, 1 / 3, 12)
+
+    def test_primaries_keep_their_hue_under_the_other_white(self):
+        # The Bradford transform moves Rec. 709's primaries by less than 0.03, each towards more red light: E is warmer than D65.
+        for rgb, (x, y) in zip(((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((.64, .33), (.30, .60), (.15, .06))):
+            found = chromaticity(rgb)
+            self.assertLess(math.dist(found, (x, y)), .03)
+            self.assertGreater(found[0], x)
 
 
 class Orientation(unittest.TestCase):

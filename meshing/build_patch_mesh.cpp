@@ -4,6 +4,7 @@
 #include "meshing/contacts.h"
 #include "meshing/edge_division.h"
 #include "meshing/face_mesher.h"
+#include "meshing/patch_surface.h"
 #include "meshing/prepare.h"
 
 #include <fmt/format.h>
@@ -41,6 +42,17 @@ public:
                                  static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
         else
             addLocated(polygon, first);
+    }
+
+    /// A polygon without patches, whose `border` is divided like that of any other.
+    void addOccluder(std::uint32_t polygon, const std::vector<std::uint32_t>& border) {
+        const Polygon& source = scene_.polygons[polygon];
+        mesh_.lookup.addGrid(scene_, source, static_cast<std::uint32_t>(mesh_.size()), 1, 1);
+        glm::vec3 centroid(0.0F);
+        for (int k = 0; k < source.size(); ++k) centroid += corner(scene_, source, k);
+        centroid /= static_cast<float>(source.size());
+        for (std::size_t k = 0; k < border.size(); ++k)
+            mesh_.occluderEdges.push_back({edgeKey(border[k], border[(k + 1) % border.size()]), centroid});
     }
 
     void addFaces(std::uint32_t polygon, const std::vector<Corners>& faces) {
@@ -151,6 +163,10 @@ void dividePolygon(std::uint32_t index, const Scene& scene, const EdgeDivision& 
                    PatchMeshBuilder& builder, MeshReport& report) {
     const Polygon& polygon = scene.polygons[index];
     DividedBorder border(scene, polygon, division, contact);
+    if (isOccluder(scene, polygon)) {
+        builder.addOccluder(index, border.outline.border);
+        return;
+    }
     if (border.whole) {
         builder.addWhole(index);
         return;
@@ -197,31 +213,45 @@ PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector
 
 PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
     PatchMeshBuilder builder(scene, report);
-    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) builder.addWhole(i);
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        const Polygon& polygon = scene.polygons[i];
+        if (isOccluder(scene, polygon))
+            builder.addOccluder(i, {polygon.vertices.begin(), polygon.vertices.begin() + polygon.size()});
+        else
+            builder.addWhole(i);
+    }
     report.patchLength = kUnrefined;
     return builder.finish();
 }
 
 double totalArea(const Scene& scene) {
     return std::accumulate(scene.polygons.begin(), scene.polygons.end(), 0.0, [&](double sum, const Polygon& polygon) {
+        if (isOccluder(scene, polygon)) return sum;
         const double area = static_cast<double>(glm::length(areaVector(scene, polygon)));
         return sum + (polygon.backMaterial != kNone ? 2.0 * area : area);
     });
 }
 
-} // namespace
-
-std::size_t defaultPatches(const Scene& scene) {
-    const std::size_t polygons = scene.polygons.size();
-    return polygons + std::max<std::size_t>(5000, polygons / 4);
+/// Polygons that will have patches.
+std::size_t litPolygons(const Scene& scene) {
+    return static_cast<std::size_t>(std::count_if(scene.polygons.begin(), scene.polygons.end(),
+                                                  [&](const Polygon& polygon) { return !isOccluder(scene, polygon); }));
 }
 
-PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
+} // namespace
+
+std::size_t defaultPatches(const Scene& scene, double refinement) {
+    const std::size_t polygons = litPolygons(scene);
+    const auto added = static_cast<double>(std::max<std::size_t>(5000, polygons / 4));
+    return polygons + static_cast<std::size_t>(refinement * added);
+}
+
+namespace {
+
+/// The patches, with the material's constants for what is on them.
+PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport& counts) {
     if (options.patchLength && !(*options.patchLength > 0.0))
         throw UsageError(fmt::format("patch length: found {}, allowed is a length above 0", *options.patchLength));
-    MeshReport ownReport;
-    MeshReport& counts = report != nullptr ? *report : ownReport;
-    counts = MeshReport{};
     if (!options.patchLength && options.patches == std::size_t{0}) return keepPolygons(scene, counts);
 
     const VertexIndex index(scene.positions);
@@ -234,10 +264,10 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
                                          *options.patchLength, predicted, kMostPatches));
         return divide(scene, index, contacts, *options.patchLength, progress, counts);
     }
-    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene)));
+    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
-    const auto polygons = static_cast<double>(scene.polygons.size());
+    const auto polygons = static_cast<double>(litPolygons(scene));
     // With more polygons than that, at least the large ones must not stay whole: no patch is larger than it would be
     // in a scene of large polygons.
     if (polygons >= wanted)
@@ -254,6 +284,16 @@ PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progres
         length *= std::sqrt(std::max(found - base, 1.0) / (wanted - base));
         mesh = divide(scene, index, contacts, length, progress, counts);
     }
+    return mesh;
+}
+
+} // namespace
+
+PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
+    MeshReport counts;
+    PatchMesh mesh = divideAsWanted(scene, options, progress, counts);
+    averageSurfaces(scene, mesh);
+    if (report != nullptr) *report = counts;
     return mesh;
 }
 

@@ -11,11 +11,13 @@ namespace lambert {
 struct MeshOptions {
     std::optional<double> patchLength;  //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
     std::optional<std::size_t> patches; //!< about so many; 0 keeps the input's polygons; none: see defaultPatches
+    double refinement = 1.0;            //!< factor on what defaultPatches adds to the polygons; > 0
     bool splitContacts = true;          //!< divide a polygon along the edges of others that stand on it
 };
 
-/// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many.
-std::size_t defaultPatches(const Scene& scene);
+/// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many; these
+/// numbers times `refinement`.
+std::size_t defaultPatches(const Scene& scene, double refinement = 1.0);
 
 struct MeshReport {
     double patchLength = 0.0;               //!< the length used, metres; infinite where nothing was refined

@@ -1,5 +1,6 @@
 #include "meshing/half_edge_mesh.h"
 
+#include "meshing/disjoint_sets.h"
 #include "meshing/pair_triangles.h"
 
 #include <OpenMesh/Core/System/omstream.hh>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace lambert {
@@ -16,30 +16,9 @@ namespace {
 
 struct PatchEdge {
     std::pair<std::uint32_t, std::uint32_t> key;
-    std::uint32_t patch;
-    bool forward; ///< the patch runs from the smaller vertex to the larger
-};
-
-/// Corners (4 × patch + k) that share a vertex of one smoothing side.
-class CornerSets {
-public:
-    explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-    std::uint32_t root(std::uint32_t corner) {
-        while (parent_[corner] != corner) {
-            parent_[corner] = parent_[parent_[corner]];
-            corner = parent_[corner];
-        }
-        return corner;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
+    std::uint32_t patch; ///< kNone: of an occluder
+    bool forward;        ///< the patch runs from the smaller vertex to the larger
+    glm::vec3 centroid;  ///< of the patch or occluder
 };
 
 std::uint32_t cornerAt(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t vertex) {
@@ -48,7 +27,7 @@ std::uint32_t cornerAt(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t
     return 4 * patch + static_cast<std::uint32_t>(k);
 }
 
-/// Edges of the fronts, sorted.
+/// Edges of the fronts and of the occluders, sorted.
 std::vector<PatchEdge> frontEdges(const PatchMesh& mesh) {
     std::vector<PatchEdge> edges;
     edges.reserve(4 * mesh.frontCount);
@@ -57,30 +36,32 @@ std::vector<PatchEdge> frontEdges(const PatchMesh& mesh) {
         for (int k = 0; k < count; ++k) {
             const std::uint32_t a = mesh.corners[patch][static_cast<std::size_t>(k)];
             const std::uint32_t b = mesh.corners[patch][static_cast<std::size_t>((k + 1) % count)];
-            edges.push_back({edgeKey(a, b), patch, a < b});
+            edges.push_back({edgeKey(a, b), patch, a < b, mesh.centroid[patch]});
         }
     }
+    for (const OccluderEdge& edge : mesh.occluderEdges) edges.push_back({edge.vertices, kNone, true, edge.centroid});
     std::sort(edges.begin(), edges.end(), [](const PatchEdge& a, const PatchEdge& b) {
         return std::tie(a.key, a.patch) < std::tie(b.key, b.patch);
     });
     return edges;
 }
 
-/// Whether another patch at the edge rises on the front side of these two (`side` 1) or on their back (−1).
+/// Whether another patch or an occluder at the edge rises on the front side of these two (`side` 1) or on their back (−1).
 bool somethingStandsOn(const PatchMesh& mesh, std::span<const PatchEdge> around, const PatchEdge& one,
                        const PatchEdge& two, float side) {
     const glm::vec3 normal = side * glm::normalize(mesh.normal[one.patch] + mesh.normal[two.patch]);
     const glm::vec3 foot = mesh.positions[one.key.first];
     return std::any_of(around.begin(), around.end(), [&](const PatchEdge& other) {
         if (other.patch == one.patch || other.patch == two.patch) return false;
-        const glm::vec3 toOther = mesh.centroid[other.patch] - foot;
+        const glm::vec3 toOther = other.centroid - foot;
         return glm::dot(normal, toOther) > 0.01F * glm::length(toOther);
     });
 }
 
-CornerSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
+/// Corners (4 × patch + k) that share a vertex of one smoothing side.
+DisjointSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
     const float smallestCosine = std::cos(creaseAngle);
-    CornerSets sets(4 * mesh.size());
+    DisjointSets sets(4 * mesh.size());
     const auto connect = [&](std::uint32_t one, std::uint32_t two, std::uint32_t vertex) {
         sets.unite(cornerAt(mesh, one, vertex), cornerAt(mesh, two, vertex));
     };
@@ -92,6 +73,7 @@ CornerSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
             for (std::size_t j = i + 1; j < around.size(); ++j) {
                 const PatchEdge& one = around[i];
                 const PatchEdge& two = around[j];
+                if (two.patch == kNone) break; // occluders come last
                 if (one.forward == two.forward || mesh.material[one.patch] != mesh.material[two.patch] ||
                     glm::dot(mesh.normal[one.patch], mesh.normal[two.patch]) < smallestCosine)
                     continue;
@@ -114,7 +96,7 @@ CornerSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
 
 HalfEdgeMesh buildHalfEdgeMesh(const PatchMesh& mesh, float creaseAngle) {
     using Topology = decltype(HalfEdgeMesh::topology);
-    CornerSets sets = smoothCorners(mesh, creaseAngle);
+    DisjointSets sets = smoothCorners(mesh, creaseAngle);
     HalfEdgeMesh result;
     Topology& topology = result.topology;
     const auto addVertex = [&](std::uint32_t position) {

@@ -66,9 +66,9 @@ std::vector<HalfEdge> triangleEdges(const std::vector<Corners>& faces) {
 
 } // namespace
 
-std::vector<std::uint32_t> pairTriangles(std::vector<Corners>& faces, std::span<const std::uint32_t> group,
-                                         std::span<const glm::vec3> positions,
-                                         std::span<const std::pair<std::uint32_t, std::uint32_t>> fixed) {
+std::vector<FaceOrigin> pairTriangles(std::vector<Corners>& faces, std::span<const std::uint32_t> group,
+                                      std::span<const glm::vec3> positions,
+                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> fixed) {
     const std::vector<HalfEdge> edges = triangleEdges(faces);
     std::vector<Candidate> candidates;
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
@@ -90,18 +90,20 @@ std::vector<std::uint32_t> pairTriangles(std::vector<Corners>& faces, std::span<
 
     std::vector<bool> used(faces.size(), false);
     std::vector<bool> dropped(faces.size(), false);
+    std::vector<std::uint32_t> partner(faces.size(), kNone);
     for (const Candidate& candidate : candidates) {
         if (used[candidate.first] || used[candidate.second]) continue;
         used[candidate.first] = used[candidate.second] = true;
         faces[candidate.first] = candidate.quad;
+        partner[candidate.first] = candidate.second;
         dropped[candidate.second] = true;
     }
-    std::vector<std::uint32_t> origin;
+    std::vector<FaceOrigin> origin;
     std::size_t kept = 0;
     for (std::uint32_t face = 0; face < faces.size(); ++face) {
         if (dropped[face]) continue;
         faces[kept++] = faces[face];
-        origin.push_back(face);
+        origin.push_back({face, partner[face]});
     }
     faces.resize(kept);
     return origin;

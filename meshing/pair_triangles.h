@@ -17,14 +17,22 @@ inline std::pair<std::uint32_t, std::uint32_t> edgeKey(std::uint32_t a, std::uin
     return a < b ? std::pair(a, b) : std::pair(b, a);
 }
 
+/// The faces that became one.
+struct FaceOrigin {
+    std::uint32_t first = 0;
+    std::uint32_t second = kNone; //!< of a pair
+    bool operator==(const FaceOrigin&) const = default;
+};
+
 /// Joins coplanar triangles that share an edge into convex quads, best pairs first (corner angles closest to 90°),
 /// and leaves pairs that would make a quad with a corner below 45° or above 135° alone.
 ///
 /// `faces` are triangles and quads; only triangles of the same `group` (#faces) are joined. Edges in `fixed` (sorted)
-/// stay. A quad takes the place of its first triangle, the place of its second is dropped, order is kept otherwise.
-/// Returns for each resulting face the index of the (first) face it came from; `faces` is changed in place.
-std::vector<std::uint32_t> pairTriangles(std::vector<Corners>& faces, std::span<const std::uint32_t> group,
-                                         std::span<const glm::vec3> positions,
-                                         std::span<const std::pair<std::uint32_t, std::uint32_t>> fixed = {});
+/// stay. A quad takes the place of its first triangle, the place of its second is dropped, order is kept otherwise. The edge
+/// that a quad's triangles shared joins its corners 0 and 2. Returns for each resulting face what it came from; `faces` is
+/// changed in place.
+std::vector<FaceOrigin> pairTriangles(std::vector<Corners>& faces, std::span<const std::uint32_t> group,
+                                      std::span<const glm::vec3> positions,
+                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> fixed = {});
 
 } // namespace lambert

@@ -5,9 +5,16 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lambert {
+
+/// A piece of an occluder's border, divided as what it touches is.
+struct OccluderEdge {
+    std::pair<std::uint32_t, std::uint32_t> vertices; //!< into PatchMesh::positions, the smaller first
+    glm::vec3 centroid;                               //!< of the occluder, metres
+};
 
 /// A scene divided into patches, as flat arrays for the kernels. Patches are triangles or convex planar quads.
 ///
@@ -20,14 +27,17 @@ struct PatchMesh {
 
     std::vector<glm::vec3> centroid;     //!< #patches, metres
     std::vector<glm::vec3> normal;       //!< #patches, unit length, to the patch's side
-    std::vector<float> area;             //!< #patches, m²
-    std::vector<Rgb> reflectance;        //!< #patches
-    std::vector<Rgb> emittedRadiosity;   //!< #patches, B_e = π L_e
+    std::vector<float> area;             //!< #patches, m², of what is not a hole; see averageSurfaces
+    std::vector<Rgb> reflectance;        //!< #patches, mean over that area, 0 to 0.99
+    std::vector<Rgb> emittedRadiosity;   //!< #patches, mean over that area, B_e = π L_e
+    std::vector<float> opacity;          //!< #patches, share of the patch that is not a hole; empty: no holes at all
     std::vector<std::uint32_t> polygon;  //!< #patches, into Scene::polygons
     std::vector<std::uint32_t> material; //!< #patches, into Scene::materials
     std::size_t frontCount = 0;
 
-    PatchLookup lookup; //!< from a ray's hit to the patch
+    std::vector<OccluderEdge> occluderEdges; //!< where light may change abruptly although no patch stands there
+
+    PatchLookup lookup; //!< from a ray's hit to the patch; not for occluders, which have none
 
     std::size_t size() const { return corners.size(); }
     bool isQuad(std::size_t patch) const { return corners[patch][3] != kNone; }

@@ -1,8 +1,10 @@
 #include "meshing/prepare.h"
 
 #include "meshing/edge_crossings.h"
+#include "meshing/join_triangles.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/weld.h"
+#include "scene/surface.h"
 
 #include <glm/geometric.hpp>
 
@@ -25,20 +27,63 @@ bool isNeedle(const Scene& scene, const Polygon& polygon, float tolerance) {
     return !(height > tolerance);
 }
 
-/// The polygon on welded vertices, without repeated corners; nothing if less than a triangle is left.
-std::optional<Polygon> weldPolygon(const Polygon& polygon, const std::vector<std::uint32_t>& representative,
-                                   const Scene& scene, float tolerance) {
-    Polygon welded = polygon;
+/// A polygon on welded vertices.
+struct WeldedPolygon {
+    Polygon polygon;
+    std::array<std::size_t, 4> corners{0, 1, 2, 3}; //!< which of the original's are left
+};
+
+/// The polygon without repeated corners; nothing if less than a triangle is left.
+std::optional<WeldedPolygon> weldPolygon(const Polygon& polygon, const std::vector<std::uint32_t>& representative,
+                                         const Scene& scene, float tolerance) {
+    WeldedPolygon welded{polygon};
+    auto& vertices = welded.polygon.vertices;
     std::size_t count = 0;
-    for (int k = 0; k < polygon.size(); ++k) {
-        const std::uint32_t vertex = representative[polygon.vertices[static_cast<std::size_t>(k)]];
-        const auto end = welded.vertices.begin() + static_cast<std::ptrdiff_t>(count);
-        if (std::find(welded.vertices.begin(), end, vertex) == end) welded.vertices[count++] = vertex;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size()); ++k) {
+        const std::uint32_t vertex = representative[polygon.vertices[k]];
+        const auto end = vertices.begin() + static_cast<std::ptrdiff_t>(count);
+        if (std::find(vertices.begin(), end, vertex) != end) continue;
+        vertices[count] = vertex;
+        welded.corners[count++] = k;
     }
     if (count < 3) return std::nullopt;
-    if (count == 3) welded.vertices[3] = kNone;
-    if (isNeedle(scene, welded, tolerance)) return std::nullopt;
+    if (count == 3) vertices[3] = kNone;
+    if (isNeedle(scene, welded.polygon, tolerance)) return std::nullopt;
     return welded;
+}
+
+/// What the material makes use of: coordinates of textures it has not are no reason to keep triangles apart.
+SurfaceCorners usedPart(SurfaceCorners surface, const Material& material) {
+    if (!material.reflectanceTexture && !material.hasHoles()) surface.uv = {};
+    if (!material.emissionTexture) surface.emissionUv = {};
+    return surface;
+}
+
+/// Adds the surface of a polygon with the given corners of another; none if it says nothing.
+std::uint32_t addSurface(Scene& target, const SurfaceCorners& source, const std::array<std::size_t, 4>& corners,
+                         const Material& material) {
+    SurfaceCorners surface;
+    for (std::size_t k = 0; k < 4; ++k) {
+        surface.uv[k] = source.uv[corners[k]];
+        surface.emissionUv[k] = source.emissionUv[corners[k]];
+        surface.tint[k] = source.tint[corners[k]];
+    }
+    surface = usedPart(surface, material);
+    const bool tinted = surface.tint != SurfaceCorners().tint;
+    if (!material.isTextured() && !tinted) return kNone;
+    target.surfaces.push_back(surface);
+    return static_cast<std::uint32_t>(target.surfaces.size() - 1);
+}
+
+/// The front surface of `other`, a polygon on the vertices of `polygon`, at the corners of `polygon`.
+std::uint32_t surfaceAtCornersOf(const Polygon& polygon, const Polygon& other, Scene& scene) {
+    if (other.surface == kNone) return kNone;
+    std::array<std::size_t, 4> corners{0, 1, 2, 3};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size()); ++k)
+        corners[k] = static_cast<std::size_t>(
+            std::find(other.vertices.begin(), other.vertices.end(), polygon.vertices[k]) - other.vertices.begin());
+    const SurfaceCorners source = scene.surfaces[other.surface];
+    return addSurface(scene, source, corners, scene.materials[other.material]);
 }
 
 void compactPositions(Scene& scene) {
@@ -69,63 +114,42 @@ Corners coincidenceKey(const Polygon& polygon, bool& reversed) {
     return key;
 }
 
-/// Merges polygons on the same vertices into the first of them.
+/// Merges polygons on the same vertices into the first of them; into the first without holes, if there is one: light that
+/// passes the others must meet it.
 void mergeCoincident(Scene& scene, PrepareReport& counts) {
     struct Entry {
         Corners key;
+        bool occluder; ///< comes after the others: these are in the way as well
+        bool holes;
         std::uint32_t polygon;
         bool reversed;
+        auto order() const { return std::tie(key, occluder, holes, polygon); }
     };
     std::vector<Entry> entries;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        Entry entry{{}, i, false};
+        Entry entry{{}, isOccluder(scene, scene.polygons[i]), hasHoles(scene, scene.polygons[i]), i, false};
         entry.key = coincidenceKey(scene.polygons[i], entry.reversed);
         entries.push_back(entry);
     }
-    std::sort(entries.begin(), entries.end(),
-              [](const Entry& a, const Entry& b) { return std::tie(a.key, a.polygon) < std::tie(b.key, b.polygon); });
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.order() < b.order(); });
     std::vector<bool> dropped(scene.polygons.size(), false);
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
         Polygon& kept = scene.polygons[entries[begin].polygon];
         for (end = begin + 1; end < entries.size() && entries[end].key == entries[begin].key; ++end) {
             const Polygon& other = scene.polygons[entries[end].polygon];
             dropped[entries[end].polygon] = true;
-            if (entries[end].reversed == entries[begin].reversed || kept.backMaterial != kNone) {
+            if (entries[end].occluder || entries[end].reversed == entries[begin].reversed ||
+                kept.backMaterial != kNone) {
                 ++counts.duplicatePolygons;
             } else {
                 kept.backMaterial = other.material;
+                kept.backSurface = surfaceAtCornersOf(kept, other, scene);
                 ++counts.mergedSheets;
             }
         }
     }
     std::size_t next = 0;
     std::erase_if(scene.polygons, [&](const Polygon&) { return dropped[next++]; });
-}
-
-std::size_t joinTriangles(Scene& scene) {
-    std::vector<Corners> faces;
-    std::vector<std::uint32_t> group;
-    // Node and materials as one number: only alike polygons are joined.
-    const auto key = [](const Polygon& p) { return std::array{p.node, p.material, p.backMaterial}; };
-    std::vector<std::array<std::uint32_t, 3>> groups;
-    for (const Polygon& polygon : scene.polygons) groups.push_back(key(polygon));
-    std::sort(groups.begin(), groups.end());
-    groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
-    for (const Polygon& polygon : scene.polygons) {
-        faces.push_back(polygon.vertices);
-        const auto it = std::lower_bound(groups.begin(), groups.end(), key(polygon));
-        group.push_back(static_cast<std::uint32_t>(it - groups.begin()));
-    }
-    const std::vector<std::uint32_t> origin = pairTriangles(faces, group, scene.positions);
-    std::vector<Polygon> joined;
-    joined.reserve(faces.size());
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        joined.push_back(scene.polygons[origin[i]]);
-        joined.back().vertices = faces[i];
-    }
-    const std::size_t pairs = scene.polygons.size() - joined.size();
-    scene.polygons = std::move(joined);
-    return pairs;
 }
 
 } // namespace
@@ -143,6 +167,8 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     prepared.materials = scene.materials;
     prepared.nodes = scene.nodes;
     prepared.cameras = scene.cameras;
+    prepared.textures = scene.textures;
+    prepared.lights = scene.lights;
     prepared.polygons.reserve(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
         auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance);
@@ -150,8 +176,14 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
             ++counts.collapsedPolygons;
             continue;
         }
-        if (scene.materials[polygon.material].twoSided) welded->backMaterial = polygon.material;
-        prepared.polygons.push_back(*welded);
+        Polygon& kept = prepared.polygons.emplace_back(welded->polygon);
+        const Material& material = scene.materials[polygon.material];
+        if (polygon.surface != kNone)
+            kept.surface = addSurface(prepared, scene.surfaces[polygon.surface], welded->corners, material);
+        if (material.twoSided) {
+            kept.backMaterial = kept.material;
+            kept.backSurface = kept.surface;
+        }
     }
     // Twice: sheets of triangles can be joined once they are one, sheets of differently cut quads only coincide then.
     if (options.mergeCoincident) mergeCoincident(prepared, counts);

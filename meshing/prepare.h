@@ -26,8 +26,10 @@ struct PrepareReport {
 float weldTolerance(const Scene& scene);
 
 /// The scene as meshing and ray casting use it: equal vertices welded, unused ones removed, polygons that vanish dropped,
-/// polygons on the same vertices merged (a ray must not choose between them), triangle pairs joined. Every polygon knows
-/// the material of its back. Polygons stay in the file's order. After the vertices of the polygons, `positions` holds the
+/// polygons on the same vertices merged (a ray must not choose between them; others win over occluders), triangle pairs
+/// joined. Every polygon knows the material and the surface of its back, at the front's corners, and has no surface if it
+/// shows none. A sheet of two polygons has holes only if both have, and then those of its front. Polygons stay in the file's
+/// order. After the vertices of the polygons, `positions` holds the
 /// points where edges cross, which meshing inserts into these edges.
 Scene prepareScene(const Scene& scene, const PrepareOptions& options = {}, PrepareReport* report = nullptr);
 

@@ -5,6 +5,7 @@
 #include "core/whole_file.h"
 #include "rendering/tone_mapping.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -45,11 +46,15 @@ std::vector<unsigned char> srgbBytes(const Image& image, float ev) {
     return bytes;
 }
 
-void writePixels(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const void* pixels) {
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
-    if (!output) throw SystemError(fmt::format("{}: cannot write: {}", file.string(), OIIO::geterror()));
-    if (!output->open(file.string(), spec) || !output->write_image(spec.format, pixels) || !output->close())
-        throw SystemError(fmt::format("{}: cannot write: {}", file.string(), output->geterror()));
+/// The content of a file of this name. In memory, because not every writer of OpenImageIO notices that the disk is full.
+std::vector<unsigned char> encoded(const std::filesystem::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
+    std::vector<unsigned char> content;
+    OIIO::Filesystem::IOVecOutput memory(content);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string(), &memory);
+    if (!output) throw SystemError(fmt::format("{}: cannot write: {}", path.string(), OIIO::geterror()));
+    if (!output->open(path.string(), spec) || !output->write_image(spec.format, pixels) || !output->close())
+        throw SystemError(fmt::format("{}: cannot write: {}", path.string(), output->geterror()));
+    return content;
 }
 
 } // namespace
@@ -73,7 +78,8 @@ void writeImage(const Image& image, const std::filesystem::path& path, float ev)
     if (linear) spec.attribute("DateTime", "1970:01:01 00:00:00");
     const std::vector<unsigned char> bytes = linear ? std::vector<unsigned char>() : srgbBytes(image, ev);
     const void* pixels = linear ? static_cast<const void*>(image.pixels.data()) : bytes.data();
-    writeWholeFile(path, [&](const std::filesystem::path& temporary) { writePixels(temporary, spec, pixels); });
+    const std::vector<unsigned char> content = encoded(path, spec, pixels);
+    writeWholeFile(path, {reinterpret_cast<const char*>(content.data()), content.size()});
 }
 
 } // namespace lambert

@@ -8,15 +8,18 @@
 #include "rendering/tone_mapping.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
+#include <optional>
 
 namespace lambert {
 
 namespace {
 
-constexpr int kTile = 4; ///< pixels along an edge; a packet has one ray per pixel
+constexpr int kTile = 4;             ///< pixels along an edge; a packet has one ray per pixel
+constexpr int kMostOccluders = 1000; ///< that one ray passes
 static_assert(kTile * kTile == RayPacket::kSize);
 
 class TileRenderer {
@@ -80,12 +83,32 @@ private:
     }
 
     Rgb radianceOf(const RayPacket& packet, int lane) const {
-        const std::uint32_t polygon = packet.polygon[lane];
-        if (polygon == kNone) return options_.background;
-        std::uint32_t patch = mesh_.lookup.patchAt(polygon, packet.u[lane], packet.v[lane]);
-        if (packet.facing[lane] >= 0.0F) patch = mesh_.lookup.backPatch(polygon, patch);
+        if (packet.polygon[lane] == kNone) return options_.background;
+        const Hit hit{packet.polygon[lane], packet.u[lane], packet.v[lane], 0.0F, packet.facing[lane] < 0.0F};
+        if (!isOccluder(caster_.scene(), caster_.scene().polygons[hit.polygon])) return radianceAt(hit);
+        const auto beyond =
+            behindOccluders(hit, {packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]});
+        return beyond ? radianceAt(*beyond) : options_.background;
+    }
+
+    /// What a ray that has met an occluder would meet without it: what is not in the mesh is not in its picture.
+    std::optional<Hit> behindOccluders(Hit hit, const glm::vec3& direction) const {
+        const Scene& scene = caster_.scene();
+        const float step = 4.0F * caster_.originOffset(0.0F) / glm::length(direction);
+        for (int passed = 0; passed < kMostOccluders; ++passed) {
+            const glm::vec3 point = polygonPoint(scene, hit.polygon, hit.u, hit.v);
+            const auto next = caster_.closest(Ray{point + step * direction, direction});
+            if (!next || !isOccluder(scene, scene.polygons[next->polygon])) return next;
+            hit = *next;
+        }
+        return std::nullopt;
+    }
+
+    Rgb radianceAt(const Hit& hit) const {
+        std::uint32_t patch = mesh_.lookup.patchAt(hit.polygon, hit.u, hit.v);
+        if (!hit.front) patch = mesh_.lookup.backPatch(hit.polygon, patch);
         if (patch == kNone) return Rgb(0.0F);
-        const glm::vec3 point = polygonPoint(caster_.scene(), polygon, packet.u[lane], packet.v[lane]);
+        const glm::vec3 point = polygonPoint(caster_.scene(), hit.polygon, hit.u, hit.v);
         const InterpolationWeights weights = interpolationWeights(mesh_, patch, point);
         const Quantity quantity = isEmitter(baked_, patch) ? Quantity::Radiosity : options_.quantity;
         Rgb radiance(0.0F);

@@ -141,6 +141,7 @@ private:
                 checkedGltfNumber(file_, place_ + "/extensions/KHR_materials_transmission/transmissionFactor",
                                   gltfNumber(*transmission, "transmissionFactor", 0.0), 1.0);
             share -= factor;
+            material_.diffusePartOnly = factor > 0.0F;
             if (factor > 0.0F)
                 warn(fmt::format("transmits {:g} of the light (transmissionFactor): this part is lost", factor));
         }
@@ -184,6 +185,7 @@ private:
             metalness = nullptr;
             constant *= *uniform;
         }
+        material_.diffusePartOnly |= constant > 0.5F;
         if (constant == 1.0F)
             warn("is fully metallic (metallicFactor 1, the default): it has no diffuse part, its reflectance is 0");
         return constant;

@@ -69,6 +69,7 @@ public:
           meshes_(file_, model, addGltfMaterials(file_, gltfFolder(path), model, builder_), builder_) {}
 
     ReadResult run() {
+        for (const tinygltf::Buffer& buffer : model_.buffers) builder_.countBytes(buffer.data.size());
         const std::vector<GltfNode> nodes = collectGltfNodes(file_, model_);
         warnOfOtherScenes();
         const std::size_t triangles = countTriangles(nodes);

@@ -103,7 +103,8 @@ void ObjMaterials::addMaterial(const MtlMaterial& source) {
     setReflectance(source, material, use);
     setEmission(source, material, use);
     setOpacity(source, material, use);
-    if (isMoreThanDiffuse(source)) notDiffuse_.push_back(source.name);
+    material.diffusePartOnly = isMoreThanDiffuse(source);
+    if (material.diffusePartOnly) notDiffuse_.push_back(source.name);
     use.textured = material.isTextured();
     use.index = builder_.addMaterial(std::move(material));
     materials_.emplace(source.name, use);

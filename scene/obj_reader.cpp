@@ -20,7 +20,7 @@ namespace lambert {
 
 namespace {
 
-/// CGAL needs some 500 bytes for a corner, and time that may grow with the square.
+/// The time to triangulate may grow with the square of this.
 constexpr std::size_t kMostCorners = std::size_t{1} << 16;
 
 /// What references count, for messages.

@@ -88,6 +88,8 @@ private:
         const auto u = element.findNumber({"s", "u", "texture_u"}), v = element.findNumber({"t", "v", "texture_v"});
         const bool hasCoordinates = !header_.textureFiles.empty() && u && v;
         PlyTints tints(element);
+        if (tints.present() && element.findNumber({"radiosity_r"}))
+            builder_.warn("holds baked light: its colours are read as reflectance, and no emission");
         forRecords(records, element, [&] {
             const glm::dvec3 position(records.number(*x), records.number(*y), records.number(*z));
             builder_.addPosition(position * options_.metresPerUnit);
@@ -109,8 +111,11 @@ private:
         const std::uint32_t node = builder_.addNode("default");
         std::vector<std::uint32_t> corners;
         forRecords(records, element, [&] {
+            const std::vector<double>& list = records.list(*indices);
+            if (list.size() > kMostPolygonCorners)
+                records.fail(fmt::format("{} vertices", list.size()), fmt::format("at most {}", kMostPolygonCorners));
             corners.clear();
-            for (const double index : records.list(*indices)) {
+            for (const double index : list) {
                 if (!(index >= 0.0 && index < static_cast<double>(vertexCount_)) || index != std::floor(index))
                     records.fail(fmt::format("the vertex {}", index), fmt::format("0 to {}", vertexCount_ - 1));
                 corners.push_back(static_cast<std::uint32_t>(index));

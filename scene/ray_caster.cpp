@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/vector_clones.h"
+#include "scene/surface.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -20,16 +21,26 @@ namespace {
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// All polygons as one quad geometry, so that Embree's primitive is our polygon; a triangle repeats its last corner, and
-/// its chart is that of the quad's first half.
-void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene) {
+/// Embree's number of a geometry. Polygons with holes have one of their own, so that no others need a filter.
+enum GeometryId : unsigned { kOpaque = 0, kWithHoles = 1 };
+
+/// Polygons of one geometry. Embree knows them by their place in `polygons`.
+struct PolygonSet {
+    const Scene* scene = nullptr;
+    std::vector<std::uint32_t> polygons; //!< into Scene::polygons, ascending
+};
+
+/// The polygons as one quad geometry; a triangle repeats its last corner, and its chart is that of the quad's first half.
+RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
+    const Scene& scene = *set.scene;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), scene.polygons.size()));
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), set.polygons.size()));
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), scene.positions.size()));
     if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
-    for (const Polygon& polygon : scene.polygons) {
+    for (const std::uint32_t index : set.polygons) {
+        const Polygon& polygon = scene.polygons[index];
         const auto& v = polygon.vertices;
         indices = std::copy_n(std::array{v[0], v[1], v[2], polygon.isQuad() ? v[3] : v[2]}.begin(), 4, indices);
     }
@@ -38,8 +49,24 @@ void attachPolygons(RTCDevice device, RTCScene target, const Scene& scene) {
         const glm::vec3 p = isFinite(position) ? position : glm::vec3(0.0F);
         vertices = std::copy_n(std::array{p.x, p.y, p.z}.begin(), 3, vertices);
     }
+    return geometry;
+}
+
+/// Embree's filter: rejects the hits (at most 16 at once) that lie in a hole.
+void rejectHoles(const RTCFilterFunctionNArguments* query) {
+    const auto& set = *static_cast<const PolygonSet*>(query->geometryUserPtr);
+    for (unsigned lane = 0; lane < query->N; ++lane) {
+        if (query->valid[lane] == 0) continue;
+        const std::uint32_t polygon = set.polygons[RTCHitN_primID(query->hit, query->N, lane)];
+        const float u = RTCHitN_u(query->hit, query->N, lane);
+        const float v = RTCHitN_v(query->hit, query->N, lane);
+        if (isHole(*set.scene, set.scene->polygons[polygon], u, v)) query->valid[lane] = 0;
+    }
+}
+
+void attach(RTCScene target, RTCGeometry geometry, GeometryId id) {
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(target, geometry);
+    rtcAttachGeometryByID(target, geometry, id);
     rtcReleaseGeometry(geometry);
 }
 
@@ -87,6 +114,13 @@ void store(const RTCRayHit16& rays, RayPacket& packet) {
     }
 }
 
+/// Occluders have two backs.
+void turnOccluders(const Scene& scene, RayPacket& packet) {
+    for (int lane = 0; lane < RayPacket::kSize; ++lane)
+        if (packet.polygon[lane] != kNone && isOccluder(scene, scene.polygons[packet.polygon[lane]]))
+            packet.facing[lane] = std::abs(packet.facing[lane]);
+}
+
 RTCRay embreeRay(const Ray& ray) {
     assert(isFinite(ray.origin) && isFinite(ray.direction)); // Debian's Embree aborts on such rays
     RTCRay result{};
@@ -107,8 +141,30 @@ struct RayCaster::Impl {
     const Scene* scene = nullptr;
     Bounds bounds;
     float largestCoordinate = 0.0F;
+    bool hasOccluders = false;
     RTCDevice device = nullptr;
     RTCScene embree = nullptr;
+    std::array<PolygonSet, 2> sets; //!< by GeometryId
+
+    /// Sorts the polygons into those with holes and the others, and gives them to Embree.
+    void attachPolygons() {
+        for (PolygonSet& set : sets) set.scene = scene;
+        for (std::uint32_t i = 0; i < scene->polygons.size(); ++i)
+            sets[hasHoles(*scene, scene->polygons[i]) ? kWithHoles : kOpaque].polygons.push_back(i);
+        if (!sets[kOpaque].polygons.empty()) attach(embree, quadGeometry(device, sets[kOpaque]), kOpaque);
+        if (!anyHoles()) return;
+        const RTCGeometry geometry = quadGeometry(device, sets[kWithHoles]);
+        rtcSetGeometryUserData(geometry, &sets[kWithHoles]);
+        rtcSetGeometryIntersectFilterFunction(geometry, rejectHoles);
+        rtcSetGeometryOccludedFilterFunction(geometry, rejectHoles);
+        attach(embree, geometry, kWithHoles);
+    }
+
+    bool anyHoles() const { return !sets[kWithHoles].polygons.empty(); }
+
+    std::uint32_t polygonOf(unsigned geometry, unsigned primitive) const {
+        return anyHoles() ? sets[geometry].polygons[primitive] : primitive;
+    }
 
     /// `rays` hold the origins, `packet` the directions.
     void trace(RTCRayHit16& rays, RayPacket& packet) const {
@@ -118,6 +174,11 @@ struct RayCaster::Impl {
         loadDirections(packet, rays);
         rtcIntersect16(packet.active, embree, &context, &rays);
         store(rays, packet);
+        if (anyHoles())
+            for (int lane = 0; lane < RayPacket::kSize; ++lane)
+                if (packet.polygon[lane] != kNone)
+                    packet.polygon[lane] = polygonOf(rays.hit.geomID[lane], rays.hit.primID[lane]);
+        if (hasOccluders) turnOccluders(*scene, packet);
     }
 
     ~Impl() {
@@ -142,13 +203,15 @@ RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl_->bounds = boundsOf(scene);
     const glm::vec3 largest = glm::max(glm::abs(impl_->bounds.lower), glm::abs(impl_->bounds.upper));
     impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
+    impl_->hasOccluders = std::any_of(scene.polygons.begin(), scene.polygons.end(),
+                                      [&](const Polygon& polygon) { return isOccluder(scene, polygon); });
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr)
         throw SystemError(
             fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     impl_->embree = rtcNewScene(impl_->device);
     rtcSetSceneFlags(impl_->embree, RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
-    if (!scene.polygons.empty()) attachPolygons(impl_->device, impl_->embree, scene);
+    impl_->attachPolygons();
     // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
     // (The device's own "threads" setting would limit oneTBB for the whole program.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->embree); });
@@ -168,7 +231,10 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, glm::dot(ray.direction, normal) < 0.0F};
+    const std::uint32_t polygon = impl_->polygonOf(query.hit.geomID, query.hit.primID);
+    const bool front =
+        glm::dot(ray.direction, normal) < 0.0F && !isOccluder(*impl_->scene, impl_->scene->polygons[polygon]);
+    return Hit{polygon, query.hit.u, query.hit.v, query.ray.tfar, front};
 }
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {

@@ -41,7 +41,8 @@ struct alignas(64) RayOrigins {
 /// A quad's is affine on each of the triangles (v0, v1, v3), where u + v <= 1, and (v2, v3, v1).
 glm::vec3 polygonPoint(const Scene& scene, std::uint32_t polygon, float u, float v);
 
-/// Finds what rays hit first among the source polygons of a scene. Thread-safe.
+/// Finds what rays hit first among the source polygons of a scene. Thread-safe. Rays pass through holes (see hasHoles), where
+/// the texel nearest to a hit, without any filtering, decides. Occluders are met on their back, from wherever they are seen.
 class RayCaster {
 public:
     /// `scene` must outlive the caster. Every polygon must be finite and have an area.

@@ -38,6 +38,10 @@ struct Material {
     Rgb reflectance{0.5F};     //!< per channel, 0 to 0.99; times its texture and the polygon's tint
     Rgb emittedRadiance{0.0F}; //!< L_e, >= 0, per m² and sr; the emitted radiosity is π L_e; times its texture
     bool twoSided = false;     //!< reflects and emits on the back as well
+    /// Only blocks light, is black on both sides and not part of what is baked: its polygons have no patches, their edges
+    /// still divide what they touch.
+    bool occluder = false;
+    bool diffusePartOnly = false; //!< the file gives it gloss, a mirror or glass as well, which is left out
 
     TextureUse reflectanceTexture{};
     TextureUse emissionTexture{};
@@ -107,6 +111,11 @@ struct Scene {
 /// The corner `k` of a polygon.
 inline const glm::vec3& corner(const Scene& scene, const Polygon& polygon, int k) {
     return scene.positions[polygon.vertices[static_cast<std::size_t>(k)]];
+}
+
+/// Whether a polygon only blocks light.
+inline bool isOccluder(const Scene& scene, const Polygon& polygon) {
+    return scene.materials[polygon.material].occluder;
 }
 
 /// Half the cross product of the diagonals: points to the front, its length is the area in m².

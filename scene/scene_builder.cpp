@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/triangulation.h"
 #include "scene/input_file.h"
+#include "scene/merge_warnings.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -19,6 +20,8 @@ namespace lambert {
 
 namespace {
 
+constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finite
+constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
 constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
 constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
@@ -80,6 +83,26 @@ std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm:
     return result;
 }
 
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Of the first loop less all others, whichever way they turn.
+double areaWithHoles(std::span<const glm::dvec2> points, std::span<const std::size_t> loopSizes) {
+    double area = 0.0;
+    for (std::size_t loop = 0, begin = 0; loop < loopSizes.size(); begin += loopSizes[loop++]) {
+        const auto corners = points.subspan(begin, loopSizes[loop]);
+        double twice = 0.0;
+        for (std::size_t k = 0; k < corners.size(); ++k) twice += cross(corners[k], corners[(k + 1) % corners.size()]);
+        area += (loop == 0 ? 0.5 : -0.5) * std::abs(twice);
+    }
+    return area;
+}
+
+double areaOf(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const glm::dvec2> points) {
+    double twice = 0.0;
+    for (const auto& [a, b, c] : triangles) twice += cross(points[b] - points[a], points[c] - points[a]);
+    return 0.5 * twice;
+}
+
 } // namespace
 
 Rgb notAboveLargest(const Rgb& factor) {
@@ -87,7 +110,21 @@ Rgb notAboveLargest(const Rgb& factor) {
     return atMostWhite ? glm::min(factor, kMaxReflectance) : factor;
 }
 
-SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {}
+SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file_, error);
+    if (!error) countBytes(size);
+}
+
+std::uintmax_t SceneBuilder::mostPolygons() const {
+    return options_.mostPolygons != 0 ? options_.mostPolygons : kPolygonsOfAnyFile + bytes_;
+}
+
+void SceneBuilder::requireFewerThan(std::uintmax_t most, std::size_t count, const char* what) const {
+    if (count >= most)
+        throw InputError(
+            fmt::format("{}: found more {} than allowed ({}); --most-polygons allows more", file_, what, most));
+}
 
 void SceneBuilder::reserve(std::size_t positions, std::size_t polygons) {
     result_.scene.positions.reserve(positions);
@@ -98,20 +135,22 @@ std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     auto& positions = result_.scene.positions;
     if (positions.size() >= kNone)
         throw InputError(fmt::format("{}: found more vertices than allowed ({})", file_, kNone));
+    requireFewerThan(4 * mostPolygons(), positions.size(), "vertices");
     positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y), static_cast<float>(metres.z));
     return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
 std::uint32_t SceneBuilder::addMaterial(Material material) {
     const Rgb reflectance = glm::clamp(material.reflectance, 0.0F, kMaxReflectance);
-    const Rgb emittedRadiance = glm::max(material.emittedRadiance, 0.0F);
+    const Rgb emittedRadiance = glm::clamp(material.emittedRadiance, 0.0F, kMaxEmission);
     std::string changes;
     if (reflectance != material.reflectance)
-        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {}", material.reflectance.x,
-                              material.reflectance.y, material.reflectance.z, kMaxReflectance);
+        changes = fmt::format("reflectance {:g} {:g} {:g} clamped to 0 ... {} (no surface returns all light)",
+                              material.reflectance.x, material.reflectance.y, material.reflectance.z, kMaxReflectance);
     if (emittedRadiance != material.emittedRadiance)
-        changes += fmt::format("{}negative emission {:g} {:g} {:g} set to 0", changes.empty() ? "" : "; ",
-                               material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z);
+        changes += fmt::format("{}emission {:g} {:g} {:g} clamped to 0 ... {:g}", changes.empty() ? "" : "; ",
+                               material.emittedRadiance.x, material.emittedRadiance.y, material.emittedRadiance.z,
+                               kMaxEmission);
     if (!changes.empty()) warn(fmt::format("material {}: {}", inQuotes(material.name), changes));
 
     material.reflectance = reflectance;
@@ -163,6 +202,7 @@ std::shared_ptr<const Texture> SceneBuilder::textureOrNull(const std::string& na
     try {
         return read();
     } catch (const InputError& error) {
+        ++result_.report.missingImages;
         warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
         return nullptr;
     }
@@ -195,6 +235,7 @@ void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint
                               std::span<const CornerSurface> surface) {
     ReadReport& report = result_.report;
     const auto& positions = result_.scene.positions;
+    requireFewerThan(mostPolygons(), report.inputPolygons, "polygons");
     ++report.inputPolygons;
     if (!std::all_of(vertices.begin(), vertices.end(),
                      [&](std::uint32_t vertex) { return isFinite(positions[vertex]); })) {
@@ -299,6 +340,38 @@ bool SceneBuilder::addSplit() {
     return true;
 }
 
+bool SceneBuilder::addPolygonWithHoles(std::span<const std::uint32_t> vertices, std::span<const std::size_t> loopSizes,
+                                       std::uint32_t material, std::uint32_t node) {
+    const std::span<const std::uint32_t> border = vertices.first(loopSizes.front());
+    std::vector<glm::dvec3> points;
+    for (const std::uint32_t vertex : vertices) points.emplace_back(result_.scene.positions[vertex]);
+    const glm::dvec3 normal = newellNormal(std::span(points).first(border.size()));
+    const double size = glm::length(normal);
+    if (!(size > 0.0) || !std::isfinite(size)) {
+        addPolygon(border, material, node); // which counts it as what it is
+        return true;
+    }
+
+    const std::vector<glm::dvec2> plane = projected(points, normal / size);
+    const auto triangles = triangulateLoops(plane, loopSizes);
+    const double expected = areaWithHoles(plane, loopSizes);
+    constexpr double kRounding = 1e-6; // of the border's area; anything larger is a hole in the wrong place
+    if (!triangles || !(std::abs(areaOf(*triangles, plane) - expected) <= kRounding * 0.5 * size)) {
+        addPolygon(border, material, node);
+        return false;
+    }
+
+    ++result_.report.inputPolygons;
+    corners_.assign(vertices.begin(), vertices.end());
+    surface_.clear();
+    material_ = material;
+    node_ = node;
+    bool kept = false;
+    for (const auto& [a, b, c] : *triangles) kept |= addTriangle(a, b, c);
+    ++(kept ? result_.report.splitPolygons : result_.report.degeneratePolygons);
+    return true;
+}
+
 ReadResult SceneBuilder::finish() {
     const ReadReport& report = result_.report;
     if (result_.scene.polygons.empty()) {
@@ -309,6 +382,7 @@ ReadResult SceneBuilder::finish() {
     }
     if (fans_ > 0)
         warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
+    result_.report.warnings = mergeWarnings(result_.report.warnings);
     return std::exchange(result_, {});
 }
 

@@ -18,12 +18,19 @@ inline constexpr float kMaxReflectance = 0.99F;
 /// such factors are, needs no warning; beyond white it stays, for SceneBuilder::addMaterial to warn.
 Rgb notAboveLargest(const Rgb& factor);
 
+/// Of one polygon in a file: splitting it takes time that may grow with the square.
+inline constexpr std::size_t kMostPolygonCorners = std::size_t{1} << 16;
+
 /// What all readers share: takes what a file says and makes a Scene of triangles and convex planar quads of
 /// it, counting and naming what has to be dropped or changed on the way.
 class SceneBuilder {
 public:
     /// `file` stands at the beginning of every message.
     SceneBuilder(std::string file, const ReadOptions& options);
+
+    /// Allows one more polygon for each of these bytes that the scene's file names, such as a buffer's; the file's own are
+    /// counted already. See ReadOptions::mostPolygons.
+    void countBytes(std::uintmax_t bytes) { bytes_ += bytes; }
 
     /// Takes the memory for this many, so that growing does not need it twice. More or fewer may follow.
     void reserve(std::size_t positions, std::size_t polygons);
@@ -32,8 +39,8 @@ public:
     /// are allowed: the polygons that use them are dropped and counted.
     std::uint32_t addPosition(const glm::dvec3& metres);
 
-    /// Adds a material and returns its index. Reflectance is clamped to [0, 0.99] and negative emission to 0,
-    /// with one warning per material. The numbers must be finite.
+    /// Adds a material and returns its index. Reflectance is clamped to [0, 0.99], emission to
+    /// [0, 1e30], with one warning per material. The numbers must be finite.
     std::uint32_t addMaterial(Material material);
 
     /// Adds the name of a node and returns its index.
@@ -74,6 +81,15 @@ public:
     void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,
                     std::span<const CornerSurface> surface);
 
+    /// Adds a planar polygon with holes: the corners of the border (front counter-clockwise) and of each hole, one loop
+    /// after the other, `loopSizes` many each. A loop may also take in holes by seams, edges that it goes there and back.
+    /// False if loops cross or lie outside the border, so that the border was filled instead.
+    bool addPolygonWithHoles(std::span<const std::uint32_t> vertices, std::span<const std::size_t> loopSizes,
+                             std::uint32_t material, std::uint32_t node);
+
+    /// Polygons added so far, after splitting.
+    std::size_t polygonCount() const { return result_.scene.polygons.size(); }
+
     /// Adds a line to the report.
     void warn(const std::string& text);
     /// Adds a line to the report, or throws it as InputError under `strict`: for what the scene names but does not have.
@@ -83,6 +99,8 @@ public:
     ReadResult finish();
 
 private:
+    void requireFewerThan(std::uintmax_t most, std::size_t count, const char* what) const;
+    std::uintmax_t mostPolygons() const;
     bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c); //!< into corners_
     bool addQuad();
     bool addSplit();
@@ -96,6 +114,7 @@ private:
 
     std::string file_;
     ReadOptions options_;
+    std::uintmax_t bytes_ = 0; //!< of the scene's files
     ReadResult result_;
     std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -12,29 +14,41 @@ namespace lambert {
 
 namespace {
 
-struct Format {
-    std::string_view extension;
-    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
+struct Reader {
+    std::string_view extension; //!< lower case
+    ReadResult (*read)(const std::filesystem::path&, const ReadOptions&);
 };
 
-constexpr Format kFormats[] = {
-    {".obj", readObj}, {".gltf", readGltf}, {".glb", readGltf}, {".ply", readPly}, {".stl", readStl},
-};
+constexpr std::array kReaders{Reader{".gltf", readGltf}, Reader{".glb", readGltf}, Reader{".obj", readObj},
+                              Reader{".ply", readPly},   Reader{".stl", readStl},  Reader{".mgf", readMgf}};
+
+/// The reader for a file's extension, or none.
+const Reader* readerOf(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    const auto* const found = std::find_if(kReaders.begin(), kReaders.end(),
+                                           [&](const Reader& reader) { return reader.extension == extension; });
+    return found != kReaders.end() ? found : nullptr;
+}
 
 } // namespace
+
+std::string sceneExtensions() {
+    std::vector<std::string_view> names;
+    for (const Reader& reader : kReaders) names.push_back(reader.extension);
+    const std::string_view last = names.back();
+    names.pop_back();
+    return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+bool hasSceneExtension(const std::filesystem::path& path) { return readerOf(path) != nullptr; }
 
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options) {
     if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
         throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
                                      options.metresPerUnit));
-    const std::string extension = lowerCase(path.extension().string());
-    std::string allowed;
-    for (const Format& format : kFormats) {
-        if (extension == format.extension) return format.read(path, options);
-        allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", format.extension);
-    }
+    if (const Reader* reader = readerOf(path)) return reader->read(path, options);
     throw InputError(fmt::format("{}: found the extension {}, allowed are {}", path.string(),
-                                 inQuotes(path.extension().string()), allowed));
+                                 inQuotes(path.extension().string()), sceneExtensions()));
 }
 
 } // namespace lambert

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "scene/overrides.h"
 #include "scene/scene.h"
 
 #include <cstddef>
@@ -16,6 +17,18 @@ struct ReadOptions {
     bool strict = false;            //!< what would be replaced with a warning (a missing image) is an InputError
     bool allowOutsideFiles = false; //!< a scene may name files outside its own folder
     Progress* progress = nullptr;   //!< of huge files
+    int curveSegments = 24;         //!< of MGF: straight pieces of a full circle, even, 4 to 1024
+    /// A scene with more is an InputError, so that a small file in which much is shown many times cannot fill the memory;
+    /// 0: 2^20 and one for each byte of its files, more than any file has that says each polygon once.
+    std::size_t mostPolygons = 0;
+};
+
+/// What a user changed of a scene, and how.
+struct AppliedOverrides {
+    std::filesystem::path file; //!< that was used, empty if none
+    double metresPerUnit = 1.0;
+    bool twoSided = false;
+    SceneOverrides changes; //!< in the order in which they were made
 };
 
 /// What a reader had to leave out or change.
@@ -24,7 +37,9 @@ struct ReadReport {
     std::size_t nonFinitePolygons = 0;  //!< dropped: a coordinate is NaN or infinite
     std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
     std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
+    std::size_t missingImages = 0;      //!< could not be read, see the warnings
     std::vector<std::string> warnings;  //!< one line each, with the file's name
+    AppliedOverrides overrides;         //!< made after reading
 };
 
 struct ReadResult {
@@ -36,6 +51,10 @@ struct ReadResult {
 /// Throws InputError, with file and place, if the file cannot be used; UsageError if `metresPerUnit` is not above 0 and finite,
 /// or not 1 for glTF.
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Whether readScene has a reader for files of this name, and the extensions of which that is so (".obj, .gltf and .glb").
+bool hasSceneExtension(const std::filesystem::path& path);
+std::string sceneExtensions();
 
 /// The readers behind readScene.
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <optional>
@@ -34,6 +35,7 @@ public:
     /// What follows belongs to the solid `name`.
     void beginSolid(std::string_view name) { node_ = builder_.addNode(name.empty() ? "default" : std::string(name)); }
 
+    std::size_t cornerCount() const { return corners_.size(); }
     void addVertex(const glm::dvec3& position) { corners_.push_back(builder_.addPosition(position * metresPerUnit_)); }
 
     /// Ends a facet with the vertices added.
@@ -50,6 +52,13 @@ private:
     std::uint32_t node_ = kNone;
     std::vector<std::uint32_t> corners_;
 };
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kSpaces = " \t\v\f";
+    const std::size_t begin = text.find_first_not_of(kSpaces);
+    return begin == std::string_view::npos ? std::string_view()
+                                           : text.substr(begin, text.find_last_not_of(kSpaces) + 1 - begin);
+}
 
 std::uint32_t facetCount(std::string_view content) {
     std::uint32_t count = 0;
@@ -102,53 +111,63 @@ void readBinary(const std::string& file, std::string_view content, const ReadOpt
 class TextReading {
 public:
     TextReading(const std::string& file, std::string_view content, StlFacets& facets)
-        : file_(file), lines_(content), facets_(facets) {}
+        : file_(file), rest_(content), facets_(facets) {}
 
     void run() {
-        while (const auto line = lines_.next()) {
-            lastLine_ = line->number;
-            statement(*line);
+        while (!rest_.empty()) {
+            nextLine();
+            if (!line_.empty()) statement();
         }
-        if (inFacet_) failAt(file_, lastLine_, "the end of the file", "endfacet");
+        if (inFacet_) failAt(file_, number_, "the end of the file", "endfacet");
         if (inSolid_) facets_.builder().warn("the file ends without endsolid");
     }
 
 private:
-    void statement(const ObjLine& line) {
-        const std::string keyword = lowerCase(line.keyword);
+    void nextLine() {
+        const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+        line_ = trimmed(rest_.substr(0, end));
+        rest_.remove_prefix(end);
+        rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest_.size(), 1));
+        ++number_;
+    }
+
+    void statement() {
+        std::string_view rest = line_;
+        const std::string keyword = lowerCase(nextWord(rest));
         if (keyword == "vertex") {
-            vertex(line);
+            addVertex(rest);
         } else if (keyword == "facet" || keyword == "endfacet") {
             const bool begins = keyword == "facet";
-            if (inFacet_ == begins)
-                failAt(file_, line.number, line.text, begins ? "endfacet before it" : "facet before it");
+            if (inFacet_ == begins) fail(begins ? "endfacet before it" : "facet before it");
             inFacet_ = begins;
             if (!begins) facets_.endFacet();
         } else if (keyword == "solid" || keyword == "endsolid") {
-            if (inFacet_) failAt(file_, line.number, line.text, "endfacet before it");
+            if (inFacet_) fail("endfacet before it");
             inSolid_ = keyword == "solid";
-            if (inSolid_) facets_.beginSolid(line.rest);
+            if (inSolid_) facets_.beginSolid(trimmed(rest));
         } else if (keyword != "outer" && keyword != "endloop") {
-            failAt(file_, line.number, line.text, "solid, facet, outer loop, vertex, endloop, endfacet or endsolid");
+            fail("solid, facet, outer loop, vertex, endloop, endfacet or endsolid");
         }
     }
 
-    void vertex(const ObjLine& line) {
-        if (!inFacet_) failAt(file_, line.number, line.text, "facet before it");
+    void addVertex(std::string_view words) {
+        if (!inFacet_) fail("facet before it");
+        if (facets_.cornerCount() == kMostPolygonCorners) fail(fmt::format("at most {} vertices", kMostPolygonCorners));
         glm::dvec3 position;
-        std::string_view rest = line.rest;
         for (int axis = 0; axis < 3; ++axis) {
-            const std::optional<double> value = parseNumber(nextWord(rest));
-            if (!value) failAt(file_, line.number, line.text, "3 numbers after vertex");
+            const std::optional<double> value = parseNumber(nextWord(words));
+            if (!value) fail("3 numbers after vertex");
             position[axis] = *value;
         }
         facets_.addVertex(position);
     }
 
+    [[noreturn]] void fail(const std::string& expected) const { failAt(file_, number_, line_, expected); }
+
     const std::string& file_;
-    ObjLines lines_;
+    std::string_view rest_, line_;
+    std::size_t number_ = 0; //!< of the line, from 1
     StlFacets& facets_;
-    std::size_t lastLine_ = 0;
     bool inSolid_ = false, inFacet_ = false;
 };
 

@@ -1,7 +1,9 @@
 #include "scene/texture.h"
 
 #include "core/error.h"
+#include "scene/image_guard.h"
 #include "scene/input_file.h"
+#include "scene/quiet_libraries.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -16,6 +18,8 @@
 #include <unistd.h>
 
 namespace lambert {
+
+double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
 
 namespace {
 
@@ -121,7 +125,8 @@ private:
         Channels result;
         const int colours = spec_.alpha_channel >= 0 ? spec_.nchannels - 1 : spec_.nchannels;
         if (colours >= 3) result = {0, 1, 2, -1};
-        result.alpha = spec_.alpha_channel;
+        // OpenImageIO's GIF reader says 4 for the last of 4.
+        result.alpha = std::min(spec_.alpha_channel, spec_.nchannels - 1);
         return result;
     }
 
@@ -198,6 +203,7 @@ private:
 /// Opens `file` by its name, or as `format` if that is given.
 std::shared_ptr<const Texture> read(const std::string& file, const char* format, const std::string& name,
                                     TextureContent content) {
+    const QuietLibraries quiet;
     // Transparent pixels keep their colour as it stands in the file.
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;
@@ -244,6 +250,8 @@ float Texture::opacity(int x, int y) const {
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
+    const std::string bytes = readInputFile(path);
+    refuseHostileImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     return read(path.string(), nullptr, path.filename().string(), content);
 }
 
@@ -252,6 +260,7 @@ std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, 
     const std::string_view start(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const bool jpeg = start.starts_with("\xFF\xD8");
     if (!jpeg && !start.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
+    refuseHostileImage(bytes);
     const MemoryFile file(bytes);
     return read(file.path(), jpeg ? "jpeg" : "png", name, content);
 }

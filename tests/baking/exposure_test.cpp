@@ -11,8 +11,7 @@ namespace {
 /// A row of quads of the given widths, each with one shown radiance, of a material that does not emit.
 BakedMesh strip(const std::vector<std::pair<float, float>>& widthsAndValues) {
     BakedMesh mesh;
-    mesh.materials.resize(2);
-    mesh.materials[1].emittedRadiance = Rgb(1.0F);
+    mesh.materials.resize(1);
     float x = 0.0F;
     for (const auto& [width, value] : widthsAndValues) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -25,6 +24,7 @@ BakedMesh strip(const std::vector<std::pair<float, float>>& widthsAndValues) {
         }
         mesh.faces.push_back({first, first + 1, first + 2, first + 3});
         mesh.faceMaterials.push_back(0);
+        mesh.emitters.push_back(false);
         x += width;
     }
     return mesh;
@@ -53,9 +53,9 @@ TEST(AutomaticExposure, FollowsTheQuantity) {
 
 TEST(AutomaticExposure, LeavesEmittersOutUnlessEverythingEmits) {
     BakedMesh mesh = strip({{1.0F, 1.0F}, {1.0F, 100.0F}});
-    mesh.faceMaterials[1] = 1;
+    mesh.emitters[1] = true;
     EXPECT_NEAR(shownAt(mesh, 1.0F), 0.9F, kRounding);
-    mesh.faceMaterials[0] = 1;
+    mesh.emitters[0] = true;
     EXPECT_NEAR(shownAt(mesh, 100.0F), 0.9F, kRounding);
 }
 

@@ -35,6 +35,7 @@ inline BakedMesh sampleMesh() {
     vertex(0.5F, 1.0F, Rgb(31.4F));
     mesh.faces = {{4, 5, 6, 7}, {0, 1, 2, 3}, {7, 6, 8, kNone}};
     mesh.faceMaterials = {2, 0, 2};
+    mesh.emitters = {true, false, true};
     return mesh;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -225,6 +226,53 @@ TEST(TriangulatePolygon, IsTheSameAtAnyScale) {
         for (glm::dvec2& p : scaled) p *= scale;
         EXPECT_EQ(triangulatePolygon(scaled, 4, Lines{{4, 6}}), expected);
     }
+}
+
+double areaOf(const Points& points, const Triangles& triangles) {
+    double area = 0.0;
+    for (const auto& [a, b, c] : triangles) {
+        EXPECT_GT(signedArea(points[a], points[b], points[c]), 0.0);
+        area += signedArea(points[a], points[b], points[c]);
+    }
+    return area;
+}
+
+const Points kFrame = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 1}, {1, 3}, {3, 3}, {3, 1}};
+
+TEST(TriangulateLoops, LeavesOutHolesWhicheverWayTheyTurn) {
+    Points turned = kFrame;
+    std::reverse(turned.begin() + 4, turned.end());
+    for (const Points& points : {kFrame, turned}) {
+        const auto triangles = triangulateLoops(points, std::array<std::size_t, 2>{4, 4});
+        ASSERT_TRUE(triangles.has_value());
+        EXPECT_EQ(triangles->size(), 8U); // vertices + 2 holes - 2
+        EXPECT_EQ(areaOf(points, *triangles), 12.0);
+    }
+}
+
+TEST(TriangulateLoops, ASeamIsNoEdge) {
+    Points seam(kFrame);
+    seam.push_back(kFrame[4]);
+    seam.push_back(kFrame[3]);
+    const auto triangles = triangulateLoops(seam, std::array<std::size_t, 1>{10});
+    ASSERT_TRUE(triangles.has_value());
+    EXPECT_EQ(areaOf(seam, *triangles), 12.0);
+}
+
+TEST(TriangulateLoops, HolesMayTouchTheBorderAndEachOther) {
+    const Points points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 2}, {2, 1}, {1, 2}, {2, 3}, {2, 2}};
+    const auto triangles = triangulateLoops(points, std::array<std::size_t, 3>{4, 3, 3});
+    ASSERT_TRUE(triangles.has_value());
+    EXPECT_NEAR(areaOf(points, *triangles), 16.0 - 1.5 - 0.5, 1e-14);
+}
+
+TEST(TriangulateLoops, FindsNothingWhereLoopsCrossOrHaveNoArea) {
+    const Points crossing = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {3, 1}, {5, 1}, {5, 2}};
+    EXPECT_FALSE(triangulateLoops(crossing, std::array<std::size_t, 2>{4, 3}).has_value());
+    const Points line = {{0, 0}, {1, 1}, {2, 2}};
+    EXPECT_FALSE(triangulateLoops(line, std::array<std::size_t, 1>{3}).has_value());
+    const Points thereAndBack = {{0, 0}, {1, 0}, {1, 1}, {1, 0}};
+    EXPECT_FALSE(triangulateLoops(thereAndBack, std::array<std::size_t, 1>{4}).has_value());
 }
 
 } // namespace

@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <iterator>
-#include <stdexcept>
 #include <vector>
 
 #include <unistd.h>
@@ -60,44 +61,20 @@ TEST(WriteWholeFile, ReplacesAnOldFile) {
     EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
 }
 
-TEST(WriteWholeFile, KeepsTheOldFileAndNoTemporaryOneIfWritingFails) {
+TEST(WriteWholeFiles, ReplacesAllOrNone) {
     const TemporaryFolder folder;
-    const fs::path file = folder.write("picture.png", "old");
-    const auto halfThenThrow = [](const fs::path& temporary) {
-        std::ofstream(temporary) << "half a pic";
-        throw std::runtime_error("the encoder gave up");
-    };
-    try {
-        writeWholeFile(file, halfThenThrow);
-        FAIL() << "nothing was thrown";
-    } catch (const std::runtime_error& error) {
-        EXPECT_STREQ(error.what(), "the encoder gave up");
-    }
-    EXPECT_EQ(contentOf(file), "old");
-    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"picture.png"});
-}
+    const fs::path first = folder.write("first", "old");
+    const fs::path second = folder.write("second", "old");
+    const FileContent missing{folder.path() / "missing" / "third", "new"};
+    failureOf([&] { writeWholeFiles(std::array{FileContent{first, "new"}, FileContent{second, "new"}, missing}); });
+    EXPECT_EQ(contentOf(first), "old");
+    EXPECT_EQ(contentOf(second), "old");
+    EXPECT_EQ(namesIn(folder.path()), (std::vector<std::string>{"first", "second"}));
 
-TEST(WriteWholeFile, FailsIfTheLibraryWroteNothing) {
-    const TemporaryFolder folder;
-    const fs::path file = folder.write("picture.png", "old");
-    const std::string message = failureOf([&] { writeWholeFile(file, [](const fs::path&) {}); });
-    EXPECT_NE(message.find("picture.png"), std::string::npos) << message;
-    EXPECT_EQ(contentOf(file), "old");
-}
-
-TEST(WriteWholeFile, GivesTheLibraryANameInTheSameFolderWithTheSameExtension) {
-    const TemporaryFolder folder;
-    const fs::path file = folder.path() / "picture.v2.exr";
-    fs::path given;
-    writeWholeFile(file, [&](const fs::path& temporary) {
-        given = temporary;
-        std::ofstream(temporary) << "pixels";
-    });
-    EXPECT_EQ(given.parent_path(), folder.path());
-    EXPECT_EQ(given.extension(), ".exr");
-    EXPECT_NE(given, file);
-    EXPECT_EQ(contentOf(file), "pixels");
-    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"picture.v2.exr"});
+    writeWholeFiles(std::array{FileContent{first, "new"}, FileContent{second, "newer"}});
+    EXPECT_EQ(contentOf(first), "new");
+    EXPECT_EQ(contentOf(second), "newer");
+    EXPECT_EQ(namesIn(folder.path()), (std::vector<std::string>{"first", "second"}));
 }
 
 TEST(WriteWholeFile, NamesPathAndReasonIfTheFolderIsMissing) {

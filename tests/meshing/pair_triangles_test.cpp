@@ -10,6 +10,7 @@ namespace lambert {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
+using Origins = std::vector<FaceOrigin>;
 using Faces = std::vector<Corners>;
 using Positions = std::vector<glm::vec3>;
 
@@ -31,7 +32,7 @@ std::size_t facesLeft(const Positions& positions, Faces faces = kHalves, const I
 
 TEST(PairTriangles, JoinsTheHalvesOfASquare) {
     Faces faces = kHalves;
-    EXPECT_EQ(pairTriangles(faces, Indices{0, 0}, parallelogram(90)), Indices{0});
+    EXPECT_EQ(pairTriangles(faces, Indices{0, 0}, parallelogram(90)), (Origins{{0, 1}}));
     ASSERT_EQ(faces.size(), 1U);
     // Counter-clockwise, whichever corner is first.
     std::rotate(faces[0].begin(), std::find(faces[0].begin(), faces[0].end(), 0U), faces[0].end());
@@ -84,20 +85,20 @@ TEST(PairTriangles, PrefersTheBestPairAndKeepsTheOrder) {
     // A strip 0-1-2-3 over 5-4: the middle triangle could go either way, to the right it makes a square.
     const Positions positions{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0.3F, 1, 0}};
     Faces faces{{0, 1, 5, kNone}, {1, 4, 5, kNone}, {1, 2, 4, kNone}, {2, 3, 4, kNone}};
-    EXPECT_EQ(pairTriangles(faces, Indices{0, 0, 0, 0}, positions), (Indices{0, 2}));
+    EXPECT_EQ(pairTriangles(faces, Indices{0, 0, 0, 0}, positions), (Origins{{0, 1}, {2, 3}}));
     EXPECT_NE(faces[0][3], kNone);
     EXPECT_NE(faces[1][3], kNone);
 
     Faces three{{0, 1, 5, kNone}, {1, 4, 5, kNone}, {1, 2, 4, kNone}};
     const Positions skewed{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
-    EXPECT_EQ(pairTriangles(three, Indices{0, 0, 0}, skewed), (Indices{0, 2}));
+    EXPECT_EQ(pairTriangles(three, Indices{0, 0, 0}, skewed), (Origins{{0, 1}, {2, kNone}}));
     EXPECT_NE(three[0][3], kNone) << "the square";
     EXPECT_EQ(three[1], (Corners{1, 2, 4, kNone}));
 }
 
 TEST(PairTriangles, LeavesQuadsAsTheyAre) {
     Faces faces{{0, 1, 2, 3}, {0, 2, 3, kNone}};
-    EXPECT_EQ(pairTriangles(faces, Indices{0, 0}, parallelogram(90)), (Indices{0, 1}));
+    EXPECT_EQ(pairTriangles(faces, Indices{0, 0}, parallelogram(90)), (Origins{{0, kNone}, {1, kNone}}));
     EXPECT_EQ(faces[0], (Corners{0, 1, 2, 3}));
 }
 

@@ -84,6 +84,8 @@ BakedMesh bakedWith(const Scene& scene, const PatchMesh& mesh, const Function& r
     baked.faces = mesh.corners;
     baked.faceMaterials = mesh.material;
     baked.materials = scene.materials;
+    for (const std::uint32_t material : mesh.material)
+        baked.emitters.push_back(scene.materials[material].emittedRadiance != Rgb(0.0F));
     for (std::size_t patch = 0; patch < mesh.size(); ++patch) {
         for (int k = 0; k < mesh.cornerCount(patch); ++k) {
             const std::uint32_t v = mesh.corners[patch][static_cast<std::size_t>(k)];

@@ -288,10 +288,11 @@ TEST_F(PlyReader, PrefersColoursOfFacesToThoseOfVertices) {
 }
 
 TEST_F(PlyReader, DoesNotTakeBakedLightForEmission) {
-    const Scene scene = read(ascii(kVertices + "property float radiosity_r\nproperty float radiosity_g\n" + kFaces,
-                                   "0 0 0 9 9\n1 0 0 9 9\n1 1 0 9 9\n0 1 0 9 9\n4 0 1 2 3\n"))
-                            .scene;
-    EXPECT_EQ(scene.materials[0].emittedRadiance, Rgb(0));
+    const std::string colour = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    const ReadResult result = read(ascii(kVertices + colour + "property float radiosity_r\n" + kFaces,
+                                         "0 0 0 9 9 9 5\n1 0 0 9 9 9 5\n1 1 0 9 9 9 5\n0 1 0 9 9 9 5\n4 0 1 2 3\n"));
+    EXPECT_EQ(result.scene.materials[0].emittedRadiance, Rgb(0));
+    EXPECT_TRUE(hasWarning(result, "holds baked light"));
 }
 
 /// A picture of one red and one green texel.
@@ -399,6 +400,13 @@ TEST_F(PlyReader, RejectsListsLongerThanTheFile) {
                             body.text,
                         "as the length of vertex_indices, expected a whole number up to 3");
         }
+}
+
+TEST_F(PlyReader, RejectsPolygonsOfTooManyVertices) {
+    std::string face = "65537";
+    for (int k = 0; k < 65537; ++k) face += fmt::format(" {}", k % 4);
+    expectError(ascii(kVertices + "element face 1\nproperty list int int vertex_index\n", kCorners + face),
+                "face 0: found 65537 vertices, expected at most 65536");
 }
 
 TEST_F(PlyReader, RejectsCountsThatDoNotFitIntoTheFile) {

@@ -156,6 +156,39 @@ TEST_F(SceneBuilderTest, ClampsMaterialsWithOneWarningEach) {
     EXPECT_TRUE(hasWarning(result, "file: material \"odd\""));
 }
 
+TEST_F(SceneBuilderTest, ClampsEmissionThatKernelsCannotSum) {
+    builder.addMaterial({.name = "nova", .emittedRadiance = Rgb(3e38F)});
+    addTriangle();
+    const ReadResult result = builder.finish();
+    EXPECT_EQ(result.scene.materials[0].emittedRadiance, Rgb(1e30F));
+    EXPECT_TRUE(hasWarning(result, "file: material \"nova\""));
+}
+
+TEST_F(SceneBuilderTest, RefusesMorePolygonsThanAllowedAndNamesTheOption) {
+    SceneBuilder small("file", {.mostPolygons = 2});
+    for (const glm::dvec3& p : {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}) small.addPosition(p);
+    constexpr std::array<std::uint32_t, 3> kTriangle{0, 1, 2};
+    small.addPolygon(kTriangle, 0, 0);
+    small.addPolygon(kTriangle, 0, 0);
+    try {
+        small.addPolygon(kTriangle, 0, 0);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "file: found more polygons than allowed (2); --most-polygons allows more");
+    }
+}
+
+TEST_F(SceneBuilderTest, AllowsAMillionPolygonsAndOneForEachByteOfTheSceneFiles) {
+    constexpr std::array<std::uint32_t, 3> kTriangle{0, 1, 2};
+    for (const glm::dvec3& p : {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}) builder.addPosition(p);
+    builder.countBytes(3);
+    const auto addAll = [&] {
+        for (std::size_t k = 0; k < (1U << 20) + 3; ++k) builder.addPolygon(kTriangle, 0, 0);
+    };
+    EXPECT_NO_THROW(addAll());
+    EXPECT_THROW(builder.addPolygon(kTriangle, 0, 0), InputError);
+}
+
 TEST_F(SceneBuilderTest, TwoSidedOptionAppliesToEveryMaterial) {
     SceneBuilder twoSided("file", {.twoSided = true});
     twoSided.addMaterial({});

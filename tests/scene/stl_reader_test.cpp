@@ -83,6 +83,10 @@ TEST_F(StlReader, MakesNodesOfSolids) {
     EXPECT_EQ(scene.materials.size(), 1U);
 }
 
+TEST_F(StlReader, TakesASolidsNameAsItStands) {
+    EXPECT_EQ(read("solid  C:\\parts\\ # 1 \\\n" + kFacet + "endsolid\n").scene.nodes.at(0), "C:\\parts\\ # 1 \\");
+}
+
 TEST_F(StlReader, ReadsBinaryAlsoIfItBeginsWithSolid) {
     for (const std::string header : {"", "solid part", "solid", "COLOR=abcd"}) {
         const ReadResult result = expectTriangle(binary(1, {kTriangle}, header));

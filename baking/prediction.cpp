@@ -1,0 +1,103 @@
+#include "baking/prediction.h"
+
+#include "core/parallel.h"
+#include "core/process.h"
+#include "core/stopwatch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kPilotSeconds = 0.4;
+
+// Measured on two cores; all but the rows is a small part of a bake.
+constexpr double kSecondsPerEntry = 1.5e-9; // of one iteration, one thread
+constexpr double kSecondsPerPatch = 1.5e-5; // of reconstruction
+constexpr double kBytesPerPatch = 1500.0;   // solution, reconstruction and the files' bytes
+constexpr double kBytesPerRow = 32.0;       // the allocator's, and what rounding up costs
+
+struct Pilot {
+    std::size_t rows = 0;
+    double seconds = 0.0;
+    double entries = 0.0;   ///< mean per row
+    double reflected = 0.0; ///< mean over the rows: what part of the light that leaves a patch leaves the next as well
+};
+
+double brightestChannel(const Rgb& rgb) { return static_cast<double>(std::max({rgb.x, rgb.y, rgb.z})); }
+
+/// Rows of patches spread over the mesh, until they have taken long enough to be timed, or are all.
+Pilot pilotRows(const MeshedScene& scene, const FormFactorMethod& method, Progress& progress) {
+    const std::size_t count = method.patchCount();
+    const auto batch = static_cast<std::size_t>(16 * threadCount());
+    // Multiples of the golden ratio, modulo 1, are spread evenly however many there are.
+    const auto patch = [count](std::size_t k) {
+        const double at = 0.6180339887498949 * static_cast<double>(k);
+        return static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(count));
+    };
+    std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()), RowAccumulator(count));
+    std::vector<FormFactorRow> rows(batch);
+    Pilot pilot;
+    const Stopwatch watch;
+    do {
+        parallelFor(batch, 1, [&](std::size_t begin, std::size_t end, int worker) {
+            RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
+            for (std::size_t k = begin; k < end; ++k) {
+                method.row(static_cast<std::uint32_t>(patch(pilot.rows + k)), accumulator);
+                accumulator.take(rows[k]);
+            }
+        });
+        for (std::size_t k = 0; k < batch; ++k) {
+            pilot.entries += static_cast<double>(rows[k].entries.size());
+            pilot.reflected +=
+                (1.0 - rows[k].back - rows[k].out) * brightestChannel(scene.mesh.reflectance[patch(pilot.rows + k)]);
+        }
+        pilot.rows += batch;
+        pilot.seconds = watch.seconds();
+        progress.throwIfCancelled();
+    } while (pilot.seconds < kPilotSeconds && pilot.rows < count);
+    pilot.entries /= static_cast<double>(pilot.rows);
+    pilot.reflected /= static_cast<double>(pilot.rows);
+    return pilot;
+}
+
+/// The residual falls about by what is reflected from one bounce to the next.
+double predictIterations(double reflected, const JacobiOptions& options) {
+    const double most = options.bounces > 0 ? std::min(options.bounces, options.maxIterations) : options.maxIterations;
+    if (!(options.tolerance > 0.0)) return most;
+    return std::clamp(std::log(options.tolerance) / std::log(std::clamp(reflected, 0.01, 0.999)) + 1.0, 1.0, most);
+}
+
+} // namespace
+
+BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progress& progress) {
+    Stopwatch watch;
+    const MeshedScene meshed = meshScene(scene, options, progress);
+    BakePrediction result;
+    result.seconds.mesh = watch.lap();
+    const Hemicube hemicube(
+        meshed.mesh, *meshed.rays,
+        {.resolution = meshed.resolution, .randomRotation = options.randomRotation, .seed = options.seed});
+    const Pilot pilot = pilotRows(meshed, hemicube, progress);
+
+    const auto patches = static_cast<double>(meshed.mesh.size());
+    const double secondsPerRow = pilot.seconds / static_cast<double>(pilot.rows);
+    const double entries = patches * pilot.entries;
+    result.patches = meshed.mesh.size();
+    result.resolution = meshed.resolution;
+    result.rays = hemicube.raysPerRow() * meshed.mesh.size();
+    result.secondsPerRay = secondsPerRow / static_cast<double>(hemicube.raysPerRow());
+    result.seconds.formFactors = secondsPerRow * patches;
+    result.seconds.solve =
+        predictIterations(pilot.reflected, options.jacobi) * entries * kSecondsPerEntry / threadCount();
+    result.seconds.bake = kSecondsPerPatch * patches;
+    result.matrixBytes =
+        static_cast<std::uint64_t>(entries * static_cast<double>(sizeof(FormFactor)) +
+                                   patches * (static_cast<double>(sizeof(FormFactorRow)) + kBytesPerRow));
+    result.peakMemory = peakMemoryBytes() + result.matrixBytes + static_cast<std::uint64_t>(kBytesPerPatch * patches);
+    return result;
+}
+
+} // namespace lambert

@@ -1,0 +1,200 @@
+#include "cli/bake_job.h"
+#include "cli/bake_report.h"
+#include "cli/scene_files.h"
+#include "cli/terminal_text.h"
+
+#include "baking/exposure.h"
+#include "baking/prediction.h"
+#include "core/process.h"
+#include "core/stopwatch.h"
+#include "rendering/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+namespace lambert {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Measured on two cores.
+constexpr double kWriteSecondsPerPatch = 1e-5;
+constexpr double kPictureRay = 2.0; ///< a picture's ray and the light where it ends, in rays of a hemicube
+
+Quantity quantityOf(const BakeArguments& a) {
+    return a.quantity == "irradiance" ? Quantity::Irradiance : Quantity::Radiosity;
+}
+
+/// The EV that was typed, none for auto. Throws UsageError.
+std::optional<float> typedExposure(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    float value = 0.0F;
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 100.0F)
+        throw UsageError(fmt::format("--exposure: found \"{}\", allowed are auto or an EV from -100 to 100", text));
+    return value;
+}
+
+Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Picture& shot, float exposure,
+                    Progress& progress) {
+    RenderOptions options;
+    options.width = shot.width;
+    options.height = shot.height;
+    options.samplesPerAxis = shot.samples;
+    options.quantity = quantityOf(a);
+    if (imageFormatOf(shot.path) == ImageFormat::Png) options.toneMapExposure = exposure;
+    return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);
+}
+
+std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
+    std::string text = fmt::format("{:<20} {:>10} {:>11} {:>11} {:>11}   mean irradiance (r g b)\n", "material",
+                                   "area m²", "", "", "");
+    for (const MaterialLight& light : materialLight(baked))
+        text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
+                            light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
+    return text + fmt::format("{} patches, {} bounces, residual {:.2g}, energy imbalance {:.2g}, exposure {:.2f} EV, "
+                              "{:.1f} s\n",
+                              baked.mesh.size(), baked.solution.iterations, baked.solution.residual,
+                              baked.solution.energy.imbalance(), exposure, seconds);
+}
+
+PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
+    PictureArguments result = a.picture;
+    result.path = job.image;
+    return result;
+}
+
+ReadResult readJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
+    ReadResult read = readScene(sceneOf(a, job), &progress);
+    if (!read.report.overrides.file.empty())
+        log.line(fmt::format("{}: changes the scene (--no-overrides ignores it)", read.report.overrides.file.string()));
+    for (const std::string& warning : read.report.warnings) log.warning(warning);
+    checkCamera(pictureArguments(a, job), read.scene);
+    progress.throwIfCancelled();
+    log.line(fmt::format("{} polygons, {} materials", read.scene.polygons.size(), read.scene.materials.size()));
+    return read;
+}
+
+} // namespace
+
+SceneArguments sceneOf(const BakeArguments& a, const BakeJob& job) {
+    SceneArguments result = a.scene;
+    result.path = job.scene;
+    return result;
+}
+
+std::vector<fs::path> resultFiles(const BakeJob& job) {
+    std::vector<fs::path> files;
+    for (const BakeJob::Output& output : job.outputs) {
+        files.push_back(output.path);
+        if (output.format == BakedFormat::Obj) files.push_back(fs::path(output.path).replace_extension(".mtl"));
+    }
+    if (!job.image.empty()) files.push_back(job.image);
+    return files;
+}
+
+bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
+    std::error_code error;
+    std::optional<fs::file_time_type> oldest;
+    for (const fs::path& file : resultFiles(job)) {
+        const fs::file_time_type time = fs::last_write_time(file, error);
+        if (error || !fs::is_regular_file(file, error)) return false;
+        oldest = oldest ? std::min(*oldest, time) : time;
+    }
+    if (!oldest) return false;
+    const std::vector<fs::path> inputs = inputFiles(sceneOf(a, job));
+    return std::none_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
+        const fs::file_time_type time = fs::last_write_time(input, error);
+        return !error && time > *oldest;
+    });
+}
+
+void checkArguments(const BakeArguments& a) {
+    typedExposure(a.exposure);
+    checkPicture(a.picture);
+    bakeOptions(a.transport, a.run);
+}
+
+BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
+    const Stopwatch total;
+    const BakeOptions options = bakeOptions(a.transport, a.run);
+    const std::optional<float> typed = typedExposure(a.exposure);
+    const ReadResult read = readJob(a, job, log, progress);
+    const double readSeconds = total.seconds();
+
+    const BakedScene baked = bakeScene(read.scene, options, progress);
+    for (const std::string& warning : baked.warnings) log.warning(warning);
+    log.line(fmt::format("{} patches, hemicubes {}: {:.3g} rays, {} bounces to {:.1e}", baked.mesh.size(),
+                         baked.resolution, static_cast<double>(baked.rayCount), baked.solution.iterations,
+                         baked.solution.residual),
+             fmt::format(", {:.1f} s", total.seconds()));
+
+    const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
+    const Stopwatch writing;
+    for (const BakeJob::Output& output : job.outputs)
+        writeBaked(baked.baked, output.path, output.format, {quantityOf(a), exposure, LAMBERT_VERSION});
+    std::optional<Picture> shot;
+    if (!job.image.empty()) {
+        shot = picture(pictureArguments(a, job), *baked.scene, *baked.rays);
+        writeImage(renderPicture(a, baked, *shot, exposure, progress), shot->path, exposure);
+    }
+
+    BakeOutcome outcome;
+    const double writeSeconds = writing.seconds();
+    outcome.seconds = total.seconds();
+    outcome.report = bakeReport({baked, read.report, sceneOf(a, job), a.transport, a.run, shot,
+                                 static_cast<double>(exposure), readSeconds, writeSeconds, outcome.seconds});
+    outcome.summary = summaryOf(baked, exposure, outcome.seconds);
+    outcome.patches = baked.mesh.size();
+    outcome.rays = baked.rayCount;
+    outcome.peakMemory = peakMemoryBytes();
+    outcome.imbalance = baked.solution.energy.imbalance();
+    log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
+    if (baked.solution.residual > options.jacobi.tolerance && options.jacobi.bounces == 0) {
+        log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", baked.solution.residual,
+                                options.jacobi.tolerance));
+        outcome.exitCode = ExitCode::TargetMissed;
+    }
+    return outcome;
+}
+
+BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
+    const Stopwatch reading;
+    const ReadResult read = readJob(a, job, log, progress);
+    const double readSeconds = reading.seconds();
+    const BakePrediction predicted = predictBake(read.scene, bakeOptions(a.transport, a.run), progress);
+
+    double writeSeconds =
+        kWriteSecondsPerPatch * static_cast<double>(predicted.patches) * static_cast<double>(job.outputs.size());
+    writeSeconds += kPictureRay * predicted.secondsPerRay * pictureRays(pictureArguments(a, job));
+    const BakeSeconds& s = predicted.seconds;
+    BakeOutcome outcome;
+    outcome.patches = predicted.patches;
+    outcome.rays = predicted.rays;
+    outcome.seconds = readSeconds + s.mesh + s.formFactors + s.solve + s.bake + writeSeconds;
+    outcome.peakMemory = predicted.peakMemory;
+    outcome.report = {{"scene", job.scene.string()},
+                      {"patches", predicted.patches},
+                      {"rays", predicted.rays},
+                      {"peak_memory_bytes", predicted.peakMemory},
+                      {"options", {{"resolution", predicted.resolution}}},
+                      {"form_factors", {{"bytes", predicted.matrixBytes}}},
+                      {"seconds",
+                       {{"read", readSeconds},
+                        {"mesh", s.mesh},
+                        {"form_factors", s.formFactors},
+                        {"solve", s.solve},
+                        {"bake", s.bake},
+                        {"write", writeSeconds},
+                        {"total", outcome.seconds}}},
+                      {"warnings", read.report.warnings}};
+    return outcome;
+}
+
+} // namespace lambert

@@ -1,0 +1,72 @@
+#include "cli/batch_table.h"
+#include "cli/terminal_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lambert {
+
+namespace {
+
+constexpr std::array kStatuses{BatchStatus::Baked,  BatchStatus::Predicted,   BatchStatus::Skipped,
+                               BatchStatus::Failed, BatchStatus::Interrupted, BatchStatus::NotRun};
+
+std::string rowText(const BatchRow& row) {
+    const BakeOutcome& o = row.outcome;
+    const bool done = row.status == BatchStatus::Baked || row.status == BatchStatus::Predicted;
+    const auto cell = [](bool known, const std::string& text) { return known ? text : std::string("-"); };
+    return fmt::format(
+        "{:<11} {:>9} {:>9} {:>9} {:>9} {:>10} {:>8}{}{}", nameOf(row.status), cell(done, fmt::format("{}", o.patches)),
+        cell(done, fmt::format("{:.2g}", static_cast<double>(o.rays))), cell(done, fmt::format("{:.1f}", o.seconds)),
+        cell(done, fmt::format("{:.0f}", static_cast<double>(o.peakMemory) / 1e6)),
+        cell(o.imbalance.has_value(), fmt::format("{:.1e}", o.imbalance.value_or(0.0))),
+        cell(row.status != BatchStatus::NotRun, fmt::format("{}", row.warnings.size())), row.error.empty() ? "" : "   ",
+        row.error);
+}
+
+} // namespace
+
+const char* nameOf(BatchStatus status) {
+    switch (status) {
+    case BatchStatus::NotRun:
+        return "not run";
+    case BatchStatus::Baked:
+        return "baked";
+    case BatchStatus::Skipped:
+        return "skipped";
+    case BatchStatus::Predicted:
+        return "predicted";
+    case BatchStatus::Failed:
+        return "failed";
+    case BatchStatus::Interrupted:
+        return "interrupted";
+    }
+    return "";
+}
+
+std::string batchTable(const std::vector<BakeJob>& jobs, const std::vector<BatchRow>& rows, double seconds) {
+    std::size_t width = 5;
+    for (const BakeJob& job : jobs) width = std::max(width, job.scene.string().size());
+    std::string text = fmt::format("{:<{}} {:<11} {:>9} {:>9} {:>9} {:>9} {:>10} {:>8}\n", "scene", width, "status",
+                                   "patches", "rays", "seconds", "memory MB", "imbalance", "warnings");
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        text += fmt::format("{:<{}} {}\n", oneLine(jobs[i].scene.string()), width, rowText(rows[i]));
+
+    text += fmt::format("{} scene{}", rows.size(), rows.size() == 1 ? "" : "s");
+    const char* separator = ": ";
+    for (const BatchStatus status : kStatuses) {
+        const auto count = std::ranges::count(rows, status, &BatchRow::status);
+        if (count == 0) continue;
+        text += fmt::format("{}{} {}", separator, count, nameOf(status));
+        separator = ", ";
+    }
+    double predicted = 0.0;
+    for (const BatchRow& row : rows)
+        if (row.status == BatchStatus::Predicted) predicted += row.outcome.seconds;
+    if (predicted > 0.0) return text + fmt::format("; a bake takes about {:.3g} s\n", predicted);
+    return text + fmt::format("; {:.1f} s\n", seconds);
+}
+
+} // namespace lambert

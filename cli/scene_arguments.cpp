@@ -1,0 +1,162 @@
+#include "cli/scene_arguments.h"
+#include "cli/validators.h"
+
+#include "cli/arguments.h"
+
+#include "core/error.h"
+#include "scene/overrides_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace lambert {
+
+namespace {
+
+constexpr float kLargestRadiance = 1e30F;
+constexpr float kLargestReflectance = 0.99F;
+
+struct NamedColour {
+    std::string name;
+    Rgb colour;
+};
+
+/// NAME=r,g,b; a name may hold "=". Throws UsageError.
+NamedColour parseNamedColour(const std::string& setting, const std::string& option, float largest) {
+    const std::size_t separator = setting.rfind('=');
+    if (separator == std::string::npos)
+        throw UsageError(fmt::format("{}: found \"{}\", expected MATERIAL=r,g,b", option, setting));
+    const Rgb value = parseVector(setting.substr(separator + 1), option);
+    if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
+        throw UsageError(fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
+    return {setting.substr(0, separator), value};
+}
+
+/// What the options ask for. Throws UsageError.
+SceneOverrides typedOverrides(const SceneArguments& a) {
+    SceneOverrides result;
+    for (const std::string& setting : a.emit) {
+        const NamedColour named = parseNamedColour(setting, "--emit", kLargestRadiance);
+        result.materials.push_back({named.name, {"--emit"}, named.colour, std::nullopt, std::nullopt});
+    }
+    for (const std::string& setting : a.reflectance) {
+        const NamedColour named = parseNamedColour(setting, "--reflectance", kLargestReflectance);
+        result.materials.push_back({named.name, {"--reflectance"}, std::nullopt, named.colour, std::nullopt});
+    }
+    // The last one counts: what is excluded is not there.
+    for (const std::string& name : a.occludeOnly)
+        result.nodes.push_back({name, {"--occlude-only"}, NodeOverride::Treatment::OccludeOnly});
+    for (const std::string& name : a.exclude)
+        result.nodes.push_back({name, {"--exclude"}, NodeOverride::Treatment::Exclude});
+    return result;
+}
+
+/// `later` after `earlier`, so that it wins.
+SceneOverrides joined(SceneOverrides earlier, SceneOverrides later) {
+    std::move(later.materials.begin(), later.materials.end(), std::back_inserter(earlier.materials));
+    std::move(later.nodes.begin(), later.nodes.end(), std::back_inserter(earlier.nodes));
+    return earlier;
+}
+
+bool isGltf(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".gltf" || extension == ".glb";
+}
+
+/// The file's and the options' settings as one.
+AppliedOverrides gatherOverrides(const SceneArguments& a) {
+    AppliedOverrides result;
+    result.file = overridesFileOf(a);
+    OverridesFile file;
+    if (!result.file.empty()) file = readOverridesFile(result.file);
+    if (!a.unit && file.metresPerUnit.value_or(1.0) != 1.0 && isGltf(a.path))
+        throw InputError(fmt::format("{}: /unit: found {:g}, allowed is 1: glTF is in metres", result.file.string(),
+                                     *file.metresPerUnit));
+    result.metresPerUnit = a.unit ? *a.unit : file.metresPerUnit.value_or(1.0);
+    result.twoSided = a.twoSided || file.twoSided.value_or(false);
+    if (a.twoSided)
+        for (MaterialOverride& change : file.overrides.materials) change.twoSided.reset();
+    result.changes = joined(std::move(file.overrides), typedOverrides(a));
+    return result;
+}
+
+} // namespace
+
+void addSceneArguments(CLI::App& command, SceneArguments& a) {
+    command.add_option("scene", a.path, "Scene: " + sceneExtensions())->required()->type_name("SCENE");
+    addSceneOptions(command, a);
+}
+
+void addSceneOptions(CLI::App& command, SceneArguments& a) {
+    command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
+        ->type_name("METRES")
+        ->group("Scene");
+    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
+    command
+        .add_option("--curve-segments", a.curveSegments,
+                    "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]")
+        ->type_name("N")
+        ->check(between(4.0, 1024.0))
+        ->group("Scene");
+    command
+        .add_option("--most-polygons", a.mostPolygons,
+                    "Refuses scenes with more; 0: a million and one for each byte of the file [0]")
+        ->type_name("N")
+        ->check(between(0.0, 4e9))
+        ->group("Scene");
+    const auto addList = [&](const char* name, std::vector<std::string>& list, const char* text, const char* type) {
+        command.add_option(name, list, text)->type_name(type)->allow_extra_args(false)->group("Scene");
+    };
+    addList("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr; * in a name: any characters",
+            "MATERIAL=r,g,b");
+    addList("--reflectance", a.reflectance, "Diffuse reflectance of a material, 0 to 0.99", "MATERIAL=r,g,b");
+    addList("--exclude", a.exclude, "Leaves a node's polygons out", "NODE");
+    addList("--occlude-only", a.occludeOnly, "A node's polygons only block light and are not in the result", "NODE");
+    auto* overrides =
+        command
+            .add_option("--overrides", a.overrides, "Such changes as JSON [SCENE's name.lambert.json, if it is there]")
+            ->type_name("FILE")
+            ->group("Scene");
+    command.add_flag("--no-overrides", a.noOverrides, "Does not look for that file")
+        ->excludes(overrides)
+        ->group("Scene");
+    command.add_flag("--strict", a.strict, "A missing image and the like is an error, not a warning")->group("Scene");
+    command.add_flag("--allow-outside-files", a.allowOutsideFiles, "The scene may name files outside its own folder")
+        ->group("Scene");
+}
+
+bool unitIsGiven(const SceneArguments& a, const AppliedOverrides& overrides) {
+    return a.unit || overrides.metresPerUnit != 1.0 || isGltf(a.path);
+}
+
+std::filesystem::path overridesFileOf(const SceneArguments& a) {
+    if (!a.overrides.empty()) return a.overrides;
+    std::error_code ignored;
+    const std::filesystem::path beside = overridesFileBeside(a.path);
+    return !a.noOverrides && std::filesystem::exists(beside, ignored) ? beside : std::filesystem::path();
+}
+
+ReadResult readScene(const SceneArguments& a, Progress* progress) {
+    if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
+        throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
+    AppliedOverrides overrides = gatherOverrides(a);
+    ReadOptions options;
+    options.metresPerUnit = overrides.metresPerUnit;
+    options.twoSided = overrides.twoSided;
+    options.curveSegments = a.curveSegments;
+    options.mostPolygons = a.mostPolygons;
+    options.strict = a.strict;
+    options.allowOutsideFiles = a.allowOutsideFiles;
+    options.progress = progress;
+    ReadResult result = readScene(a.path, options);
+    applyOverrides(result.scene, overrides.changes);
+    result.report.overrides = std::move(overrides);
+    return result;
+}
+
+} // namespace lambert

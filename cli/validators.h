@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <string>
+
+namespace lambert {
+
+/// Like CLI::Range, but NaN is outside too, and so is the negative number that an unsigned option would wrap around.
+inline CLI::Validator between(double lowest, double highest) {
+    return {[=](const std::string& text) {
+                double value = 0.0;
+                if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
+                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest, highest);
+                return std::string();
+            },
+            "", ""};
+}
+
+} // namespace lambert

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace lambert {
+
+/// Elements 0 to count − 1 in sets that can be united; each set is known by its smallest element.
+class DisjointSets {
+public:
+    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+
+    std::uint32_t root(std::uint32_t element) {
+        while (parent_[element] != element) {
+            parent_[element] = parent_[parent_[element]];
+            element = parent_[element];
+        }
+        return element;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) {
+        a = root(a);
+        b = root(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::vector<std::uint32_t> parent_;
+};
+
+} // namespace lambert

@@ -1,0 +1,52 @@
+#include "baking/prediction.h"
+#include "core/error.h"
+#include "scene/example_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace lambert {
+namespace {
+
+BakeOptions smallOptions() {
+    BakeOptions options;
+    options.mesh.patches = 400;
+    options.resolution = 32;
+    return options;
+}
+
+TEST(Prediction, PatchesResolutionAndRaysAreThoseOfTheBake) {
+    Progress progress;
+    const Scene scene = roomWithBoxScene();
+    const BakePrediction predicted = predictBake(scene, smallOptions(), progress);
+    const BakedScene baked = bakeScene(scene, smallOptions(), progress);
+    EXPECT_EQ(predicted.patches, baked.mesh.size());
+    EXPECT_EQ(predicted.resolution, baked.resolution);
+    EXPECT_EQ(predicted.rays, baked.rayCount);
+}
+
+TEST(Prediction, MatrixHasAboutThePredictedSize) {
+    Progress progress;
+    const Scene scene = roomWithBoxScene();
+    const BakePrediction predicted = predictBake(scene, smallOptions(), progress);
+    const BakedScene baked = bakeScene(scene, smallOptions(), progress);
+    // Rows of a room differ by a factor of two, and some dozens are looked at; what the allocator takes is counted too.
+    EXPECT_NEAR(static_cast<double>(predicted.matrixBytes) / static_cast<double>(baked.rows.bytes), 1.0, 0.2);
+    EXPECT_GT(predicted.peakMemory, predicted.matrixBytes);
+}
+
+TEST(Prediction, SceneWithoutLightIsRefused) {
+    Progress progress;
+    const Material wall = greyMaterial("wall", 0.5F);
+    EXPECT_THROW(predictBake(boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall}), smallOptions(), progress),
+                 InputError);
+}
+
+TEST(Prediction, RefinementMultipliesThePatchesThatAreAdded) {
+    const Scene scene = roomWithBoxScene();
+    const std::size_t polygons = scene.polygons.size();
+    EXPECT_EQ(defaultPatches(scene), polygons + 5000);
+    EXPECT_EQ(defaultPatches(scene, 0.2), polygons + 1000);
+}
+
+} // namespace
+} // namespace lambert

@@ -1,0 +1,32 @@
+#include "core/process.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace lambert {
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{64} << 20;
+
+TEST(PeakMemory, HoldsWhatWasUsedAndFreed) {
+    const std::uint64_t before = peakMemoryBytes();
+    { const std::vector<char> block(kBlock, 1); }
+    EXPECT_GE(peakMemoryBytes(), before);
+    EXPECT_GE(peakMemoryBytes(), kBlock);
+}
+
+TEST(PeakMemory, BeginsAfreshAfterAReset) {
+    { const std::vector<char> block(kBlock, 1); }
+    const std::uint64_t before = peakMemoryBytes();
+    resetPeakMemory();
+    const std::uint64_t after = peakMemoryBytes();
+    if (after == before) GTEST_SKIP() << "the system does not let a process reset its peak";
+    EXPECT_LT(after, kBlock);
+    { const std::vector<char> block(kBlock, 1); }
+    EXPECT_GE(peakMemoryBytes(), kBlock);
+}
+
+} // namespace
+} // namespace lambert
