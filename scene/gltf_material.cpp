@@ -157,6 +157,7 @@ private:
             metalness = nullptr;
         }
         material_.reflectance = base.factor * share;
+        if (image != nullptr || metalness != nullptr) material_.reflectance = notAboveLargest(material_.reflectance);
         if (metalness != nullptr) {
             const GltfTexture& texture = image != nullptr ? *base.texture : *metal;
             material_.reflectanceTexture = useOf(texture, addWithoutMetal(image != nullptr ? base.texture->image : -1,

@@ -4,8 +4,6 @@
 #include "scene/input_file.h"
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -19,12 +17,6 @@ namespace {
 constexpr float kOpacityCutoff = 0.5F;
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr std::size_t kMostUndefinedNamed = 20;
-
-/// Textured or tinted white stays below the largest reflectance without a word.
-Rgb notAboveLargest(const Rgb& factor) {
-    const bool atMostWhite = glm::all(glm::lessThanEqual(factor, Rgb(1.0F)));
-    return atMostWhite ? glm::min(factor, kMaxReflectance) : factor;
-}
 
 /// Mirrors, glass and what reflects more as a mirror than diffusely.
 bool isMoreThanDiffuse(const MtlMaterial& source) {

@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,11 @@ double areaOf(std::span<const std::array<std::uint32_t, 3>> triangles, std::span
 }
 
 } // namespace
+
+Rgb notAboveLargest(const Rgb& factor) {
+    const bool atMostWhite = glm::all(glm::lessThanEqual(factor, Rgb(1.0F)));
+    return atMostWhite ? glm::min(factor, kMaxReflectance) : factor;
+}
 
 SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_(std::move(file)), options_(options) {
     std::error_code error;

@@ -14,6 +14,10 @@ namespace lambert {
 /// Per channel; above it the number of bounces grows without bound.
 inline constexpr float kMaxReflectance = 0.99F;
 
+/// A factor of textures or tints: up to white it is brought to the largest reflectance, so that white, which is what most
+/// such factors are, needs no warning; beyond white it stays, for SceneBuilder::addMaterial to warn.
+Rgb notAboveLargest(const Rgb& factor);
+
 /// Of one polygon in a file: splitting it takes time that may grow with the square.
 inline constexpr std::size_t kMostPolygonCorners = std::size_t{1} << 16;
 

@@ -13,8 +13,8 @@
 
 namespace lambert {
 
-/// The linear value of an sRGB-encoded one; both 0 to 1.
-double srgbDecoded(double value);
+/// What the colours of an 8-bit image mean; its opacity is linear in any case.
+enum class TexelEncoding : std::uint8_t { Srgb, Linear };
 
 /// What the colours of an 8-bit image mean; its opacity is linear in any case.
 enum class TexelEncoding : std::uint8_t { Srgb, Linear };
