@@ -4,6 +4,8 @@
 #include "scene/input_file.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <limits>
