@@ -224,8 +224,6 @@ std::shared_ptr<const Texture> read(const std::string& file, const char* format,
 
 } // namespace
 
-double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
-
 Texture::Texture(std::string name, int width, int height, std::vector<std::uint8_t> rgba, TexelEncoding encoding)
     : name_(std::move(name)), width_(width), height_(height), encoding_(encoding), bytes_(std::move(rgba)) {
     assert(bytes_.size() == 4 * texelCount(width, height));

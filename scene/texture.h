@@ -16,9 +16,6 @@ namespace lambert {
 /// What the colours of an 8-bit image mean; its opacity is linear in any case.
 enum class TexelEncoding : std::uint8_t { Srgb, Linear };
 
-/// What the colours of an 8-bit image mean; its opacity is linear in any case.
-enum class TexelEncoding : std::uint8_t { Srgb, Linear };
-
 /// An image on a surface: texels are constant squares, row 0 is at the top. Immutable.
 class Texture {
 public:
