@@ -14,10 +14,10 @@ namespace {
 constexpr double kPilotSeconds = 0.4;
 
 // Measured on two cores; all but the rows is a small part of a bake.
-constexpr double kSecondsPerEntry = 1.5e-9; // of one iteration, one thread
-constexpr double kSecondsPerPatch = 1.5e-5; // of reconstruction
-constexpr double kBytesPerPatch = 1500.0;   // solution, reconstruction and the files' bytes
-constexpr double kBytesPerRow = 32.0;       // the allocator's, and what rounding up costs
+constexpr double kSecondsPerEntry = 3e-9; // of one iteration, one thread
+constexpr double kSecondsPerPatch = 5e-6; // of reconstruction
+constexpr double kBytesPerPatch = 1000.0; // solution, reconstruction and the files' bytes
+constexpr double kBytesPerRow = 32.0;     // the allocator's, and what rounding up costs
 
 struct Pilot {
     std::size_t rows = 0;

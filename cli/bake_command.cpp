@@ -51,8 +51,10 @@ ExitCode bake(const BakeArguments& a) {
     if (a.outputs.empty() && a.outputDir.empty() && a.picture.path.empty() && a.run.json.empty() && !a.dryRun)
         throw UsageError("nothing to write: give -o FILE, --output-dir DIR, --image FILE or --json FILE");
     std::error_code ignored;
-    const bool several = a.scenes.size() > 1 || std::filesystem::is_directory(a.scenes.front(), ignored);
-    if (several && !a.outputs.empty()) throw UsageError("-o: is for one scene; for several give --output-dir DIR");
+    if (a.scenes.size() > 1 && !a.outputs.empty())
+        throw UsageError("-o: is for one scene; for several give --output-dir DIR");
+    const bool several =
+        a.scenes.size() > 1 || (a.outputs.empty() && std::filesystem::is_directory(a.scenes.front(), ignored));
     if (several && a.outputDir.empty() && !a.dryRun) throw UsageError("several scenes: give --output-dir DIR");
     if (!a.outputDir.empty() || several) return runBatch(a, planBatch(a), several);
     return bakeOneScene(a);

@@ -41,9 +41,10 @@ fs::path commonFolder(const fs::path& a, const fs::path& b) {
 std::vector<fs::path> scenesUnder(const fs::path& folder, const fs::path& outputDir) {
     std::vector<fs::path> scenes;
     std::error_code error;
+    fs::path path = folder; // after an error, what was to be opened
     fs::recursive_directory_iterator it(folder, error);
     for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
-        const fs::path& path = it->path();
+        path = it->path();
         const bool hidden = path.filename().string().starts_with('.');
         std::error_code vanished;
         if (it->is_directory(vanished)) {
@@ -53,7 +54,7 @@ std::vector<fs::path> scenesUnder(const fs::path& folder, const fs::path& output
             scenes.push_back(path);
         }
     }
-    if (error) throw InputError(fmt::format("{}: cannot be searched: {}", folder.string(), error.message()));
+    if (error) throw InputError(fmt::format("{}: cannot be searched: {}", path.string(), error.message()));
     if (scenes.empty())
         throw InputError(
             fmt::format("{}: found no scene in this folder, expected {}", folder.string(), sceneExtensions()));

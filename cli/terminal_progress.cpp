@@ -2,6 +2,7 @@
 #include "cli/terminal_text.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace lambert {
@@ -9,7 +10,13 @@ namespace lambert {
 namespace {
 
 constexpr std::chrono::milliseconds kUpdateInterval{100};
-constexpr std::size_t kLongestTitle = 24; ///< a line that wraps could not be cleared
+constexpr std::size_t kLongestTitle = 32;
+
+/// A line that wraps could not be cleared.
+std::size_t terminalColumns() {
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
+}
 
 } // namespace
 
@@ -40,7 +47,7 @@ void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
     const std::lock_guard lock(mutex_);
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double rate = static_cast<double>(done) / seconds;
-    std::string line = fmt::format("\r{}{:<14} ", title_, stage_);
+    std::string line = fmt::format("{}{:<14} ", title_, stage_);
     if (total > 0) {
         constexpr int kWidth = 24;
         const double part = static_cast<double>(done) / static_cast<double>(total);
@@ -50,7 +57,7 @@ void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
     } else {
         line += fmt::format("{}  {:.3g}/s", done, rate);
     }
-    writeLog(line + "\033[K");
+    writeLog("\r" + line.substr(0, terminalColumns() - 1) + "\033[K");
     lineShown_ = true;
 }
 

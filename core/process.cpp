@@ -5,17 +5,31 @@
 
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace lambert {
 
-std::uint64_t peakMemoryBytes() {
-    // Unlike getrusage, this peak can be reset.
+namespace {
+
+/// A line of proc(5) status in bytes; none if it is not there.
+std::optional<std::uint64_t> statusBytes(std::string_view name) {
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
         std::uint64_t kibibytes = 0;
-        if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+        if (word == name && status >> kibibytes) return kibibytes * 1024;
     }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::uint64_t residentMemoryBytes() { return statusBytes("VmRSS:").value_or(0); }
+
+std::uint64_t peakMemoryBytes() {
+    // Unlike getrusage, this peak can be reset.
+    if (const auto bytes = statusBytes("VmHWM:")) return *bytes;
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;

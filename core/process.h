@@ -4,6 +4,9 @@
 
 namespace lambert {
 
+/// Memory of this process that is resident now, in bytes; 0 if unknown.
+std::uint64_t residentMemoryBytes();
+
 /// Largest resident memory of this process, in bytes: since the last resetPeakMemory(), or since its start.
 std::uint64_t peakMemoryBytes();
 

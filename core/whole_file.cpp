@@ -35,13 +35,17 @@ public:
     Replacement(const Replacement&) = delete;
     Replacement& operator=(const Replacement&) = delete;
 
-    void write(std::string_view content) const {
+    void write(const std::function<void(std::ostream&)>& content) const {
         errno = 0;
         std::ofstream file(temporary_, std::ios::binary);
-        file.write(content.data(), static_cast<std::streamsize>(content.size()));
+        content(file);
         file.close();
         if (!file) fail(path_, errno != 0 ? errno : EIO);
         flush();
+    }
+
+    void write(std::string_view content) const {
+        write([&](std::ostream& file) { file.write(content.data(), static_cast<std::streamsize>(content.size())); });
     }
 
     void commit() {
@@ -68,6 +72,12 @@ private:
 } // namespace
 
 void writeWholeFile(const fs::path& path, std::string_view content) {
+    Replacement replacement(path);
+    replacement.write(content);
+    replacement.commit();
+}
+
+void writeWholeFile(const fs::path& path, const std::function<void(std::ostream&)>& content) {
     Replacement replacement(path);
     replacement.write(content);
     replacement.commit();

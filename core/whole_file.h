@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +13,9 @@ namespace lambert {
 /// then renamed over the old file. Throws SystemError (with the path and the reason) and leaves the old file
 /// untouched if anything fails.
 void writeWholeFile(const std::filesystem::path& path, std::string_view content);
+
+/// The same for content too large for memory, written piece by piece; what `content` throws is passed on.
+void writeWholeFile(const std::filesystem::path& path, const std::function<void(std::ostream&)>& content);
 
 struct FileContent {
     std::filesystem::path path;

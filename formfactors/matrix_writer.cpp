@@ -7,11 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <cstdio>
 #include <functional>
-#include <memory>
-#include <system_error>
+#include <ostream>
 #include <utility>
 
 namespace lambert {
@@ -20,12 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A file that grows too large for memory, written in blocks.
+/// Collects small pieces into blocks.
 class BlockWriter {
 public:
-    explicit BlockWriter(const fs::path& path) : file_(std::fopen(path.c_str(), "wbe"), &std::fclose) {
-        if (!file_) fail();
-    }
+    explicit BlockWriter(std::ostream& stream) : stream_(stream) {}
 
     template <typename... Arguments>
     void text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -42,28 +37,22 @@ public:
         if (block_.size() > kBlock) flush();
     }
 
-    void finish() {
-        flush();
-        if (std::fflush(file_.get()) != 0) fail();
+    void flush() {
+        stream_.write(block_.data(), static_cast<std::streamsize>(block_.size()));
+        block_.clear();
     }
 
 private:
-    void flush() {
-        if (std::fwrite(block_.data(), 1, block_.size(), file_.get()) != block_.size()) fail();
-        block_.clear();
-    }
-    [[noreturn]] static void fail() { throw SystemError("cannot write: " + std::generic_category().message(errno)); }
-
     static constexpr std::size_t kBlock = 1 << 20;
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+    std::ostream& stream_;
     fmt::memory_buffer block_;
 };
 
 void writeBlocks(const fs::path& path, const std::function<void(BlockWriter&)>& write) {
-    writeWholeFile(path, [&](const fs::path& temporary) {
-        BlockWriter writer(temporary);
+    writeWholeFile(path, [&](std::ostream& stream) {
+        BlockWriter writer(stream);
         write(writer);
-        writer.finish();
+        writer.flush();
     });
 }
 

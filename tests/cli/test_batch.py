@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """`lambert bake SCENE... --output-dir DIR`: many scenes in one run, some of them broken, interrupted, and taken up again."""
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -167,6 +168,17 @@ class WhichScenes(BatchTest):
         self.write("scenes/a.obj", box(0.5))
         runs, _ = self.batch(INPUT, "scenes/missing.obj", "scenes/a.obj", "--output-dir", "out")
         self.assertEqual([entry["status"] for entry in runs.values()], ["failed", "baked"])
+
+    def test_memory_that_one_scene_lacks_is_there_for_the_next(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (10 ** 9, 10 ** 9))
+        if run("--version", preexec_fn=limit).returncode != OK:
+            self.skipTest("the program does not start in 1 GB of address space (a sanitizer's build)")
+        self.write("scenes/a.obj", box(100))  # 1.5 million patches
+        self.write("scenes/b.obj", box(0.5))
+        done = run("bake", "scenes", "--output-dir", "out", "--threads", "2", *FEW, cwd=self.folder, preexec_fn=limit)
+        self.assertEqual(done.returncode, SYSTEM, done.stderr)
+        self.assertIn("scenes/a.obj: not enough memory", done.stderr)
+        self.assertIn("2 scenes: 1 baked, 1 failed", done.stdout)
 
     def test_report_of_one_scene_is_the_plain_object(self):
         self.write("scenes/a.obj", box(0.5))

@@ -17,6 +17,13 @@ TEST(PeakMemory, HoldsWhatWasUsedAndFreed) {
     EXPECT_GE(peakMemoryBytes(), kBlock);
 }
 
+TEST(ResidentMemory, GrowsByWhatIsInUseAndIsNoMoreThanThePeak) {
+    const std::uint64_t before = residentMemoryBytes();
+    const std::vector<char> block(kBlock, 1);
+    EXPECT_GE(residentMemoryBytes(), before + kBlock / 2);
+    EXPECT_LE(residentMemoryBytes(), peakMemoryBytes());
+}
+
 TEST(PeakMemory, BeginsAfreshAfterAReset) {
     { const std::vector<char> block(kBlock, 1); }
     const std::uint64_t before = peakMemoryBytes();
