@@ -94,8 +94,10 @@ void GltfMeshes::addPrimitive(const tinygltf::Primitive& primitive, const std::s
         return;
     }
     const bool mirrored = glm::determinant(glm::dmat3(toWorld)) < 0.0;
+    constexpr std::size_t kReportEvery = 1 << 16;
     const bool isTextured = source.material.uv || source.material.emissionUv;
     for (std::size_t t = 0; t < triangles; ++t) {
+        if ((t + 1) % kReportEvery == 0) progress_.advance(kReportEvery);
         std::array<std::size_t, 3> corners = triangleCorners(primitive.mode, t);
         if (mirrored) std::swap(corners[1], corners[2]);
         std::array<std::uint32_t, 3> vertices{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_material.h"
 
@@ -17,10 +18,10 @@ namespace lambert {
 /// Makes polygons of the model's meshes.
 class GltfMeshes {
 public:
-    /// `materials` as addGltfMaterials returned them.
+    /// `materials` as addGltfMaterials returned them. Triangles are counted in `progress`.
     GltfMeshes(const std::string& file, const tinygltf::Model& model, std::vector<GltfMaterial> materials,
-               SceneBuilder& builder)
-        : file_(file), model_(model), materials_(std::move(materials)), builder_(builder) {}
+               SceneBuilder& builder, Progress& progress)
+        : file_(file), model_(model), materials_(std::move(materials)), builder_(builder), progress_(progress) {}
 
     /// The triangles of a mesh. `mesh` is an index of the model. Throws InputError with the JSON path if what counts them
     /// reaches past its memory.
@@ -57,6 +58,7 @@ private:
     const tinygltf::Model& model_;
     std::vector<GltfMaterial> materials_;
     SceneBuilder& builder_;
+    Progress& progress_;
     std::optional<GltfMaterial> defaultMaterial_;
 
     /// The scene's vertex of a vertex of the positions at work.

@@ -22,9 +22,6 @@ namespace lambert {
 
 namespace {
 
-/// A mesh may stand in many places: a small file could ask for more polygons than any memory holds.
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;
-
 /// Extensions that a file may require: read here, or without influence on the geometry and the diffuse part of materials.
 constexpr std::array<std::string_view, 23> kKnownExtensions = {"EXT_mesh_gpu_instancing",
                                                                "EXT_meshopt_compression",
@@ -64,22 +61,22 @@ public:
     GltfReader(const std::filesystem::path& path, const tinygltf::Model& model, const ReadOptions& options)
         : file_(path.string()),
           model_(model),
-          progress_(options.progress),
+          progress_(options.progress != nullptr ? *options.progress : silent_),
           builder_(file_, options),
-          meshes_(file_, model, addGltfMaterials(file_, gltfFolder(path), model, builder_), builder_) {}
+          meshes_(file_, model, addGltfMaterials(file_, gltfFolder(path), model, builder_), builder_, progress_) {}
 
     ReadResult run() {
         for (const tinygltf::Buffer& buffer : model_.buffers) builder_.countBytes(buffer.data.size());
         const std::vector<GltfNode> nodes = collectGltfNodes(file_, model_);
         warnOfOtherScenes();
         const std::size_t triangles = countTriangles(nodes);
-        if (progress_ != nullptr) progress_->begin("reading", triangles);
+        progress_.begin("read", triangles);
         for (const GltfNode& node : nodes) {
             addMesh(node);
             addGltfCamera(file_, model_, node, builder_);
             addGltfLight(file_, model_, node, builder_);
         }
-        if (progress_ != nullptr) progress_->end();
+        progress_.end();
         meshes_.report();
         if (skinned_) builder_.warn("skins are not applied");
         return builder_.finish();
@@ -103,8 +100,10 @@ private:
             fmt::format("scene {} of {} is read, the others are not: {}", read, model_.scenes.size(), others));
     }
 
-    /// Throws InputError if there are too many.
+    /// Throws InputError if there are too many: a mesh may stand in many places, so a small file could ask for more than any
+    /// memory holds.
     std::size_t countTriangles(const std::vector<GltfNode>& nodes) const {
+        const std::size_t most = builder_.mostPolygons();
         std::vector<std::optional<std::size_t>> ofMesh(model_.meshes.size());
         std::size_t sum = 0;
         for (const GltfNode& node : nodes) {
@@ -113,11 +112,11 @@ private:
             auto& triangles = gltfElement(file_, ofMesh, "meshes", mesh, fmt::format("/nodes/{}/mesh", node.index));
             if (!triangles) triangles = meshes_.triangleCount(mesh);
             const std::size_t copies = GltfInstances(file_, model_, node.index).count();
-            if (*triangles > 0 && copies > (kMostTriangles - sum) / *triangles)
+            if (*triangles > 0 && copies > (most - sum) / *triangles)
                 throw InputError(
                     fmt::format("{}: /nodes/{}: found {} copies of a mesh of {} triangles after {} others, "
-                                "allowed at most {} triangles in all",
-                                file_, node.index, copies, *triangles, sum, kMostTriangles));
+                                "allowed at most {} triangles in all; --most-polygons allows more",
+                                file_, node.index, copies, *triangles, sum, most));
             sum += copies * *triangles;
         }
         return sum;
@@ -133,16 +132,14 @@ private:
         skinned_ |= source.skin >= 0;
 
         const GltfInstances instances(file_, model_, node.index);
-        const std::size_t triangles = meshes_.triangleCount(source.mesh);
-        for (std::size_t k = 0; k < instances.count(); ++k) {
+        for (std::size_t k = 0; k < instances.count(); ++k)
             meshes_.add(source.mesh, node.toWorld * instances.toNode(k), sceneNode);
-            if (progress_ != nullptr) progress_->advance(triangles);
-        }
     }
 
     std::string file_;
     const tinygltf::Model& model_;
-    Progress* progress_;
+    Progress silent_;
+    Progress& progress_;
     SceneBuilder builder_;
     GltfMeshes meshes_;
     bool skinned_ = false;

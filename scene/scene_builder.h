@@ -32,6 +32,9 @@ public:
     /// counted already. See ReadOptions::mostPolygons.
     void countBytes(std::uintmax_t bytes) { bytes_ += bytes; }
 
+    /// The polygons that are allowed with the bytes counted so far; addPolygon throws InputError beyond.
+    std::uintmax_t mostPolygons() const;
+
     /// Takes the memory for this many, so that growing does not need it twice. More or fewer may follow.
     void reserve(std::size_t positions, std::size_t polygons);
 
@@ -100,7 +103,6 @@ public:
 
 private:
     void requireFewerThan(std::uintmax_t most, std::size_t count, const char* what) const;
-    std::uintmax_t mostPolygons() const;
     bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c); //!< into corners_
     bool addQuad();
     bool addSplit();
