@@ -4,6 +4,7 @@
 #include "cli/targets.h"
 #include "cli/terminal_text.h"
 
+#include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 
 #include <fmt/format.h>
@@ -47,6 +48,18 @@ bool isSliver(const Scene& scene, const Polygon& polygon) {
     return 2.0F * glm::length(areaVector(scene, polygon)) < 1e-4F * longest * longest;
 }
 
+/// Watts or lumens of a prepared scene, textures and holes considered.
+RgbSum emittedPower(const Scene& prepared) {
+    Progress progress;
+    MeshOptions options;
+    options.patches = 0;
+    const PatchMesh mesh = buildPatchMesh(prepared, options, progress);
+    RgbSum sum(0.0);
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        sum += static_cast<double>(mesh.area[i]) * RgbSum(mesh.emittedRadiosity[i]);
+    return sum;
+}
+
 SceneFacts gather(const Scene& scene) {
     SceneFacts facts;
     facts.bounds = boundsOf(scene);
@@ -54,15 +67,13 @@ SceneFacts gather(const Scene& scene) {
     facts.materialArea.assign(scene.materials.size(), 0.0);
     for (const Polygon& polygon : scene.polygons) {
         const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
-        const Material& material = scene.materials[polygon.material];
         ++(polygon.isQuad() ? facts.quads : facts.triangles);
         facts.slivers += isSliver(scene, polygon) ? 1 : 0;
         ++facts.materialPolygons[polygon.material];
         facts.materialArea[polygon.material] += area;
         facts.area += area;
-        facts.emitted += area * (material.twoSided ? 2.0 : 1.0) * std::numbers::pi * RgbSum(material.emittedRadiance);
     }
-    prepareScene(scene, {}, &facts.prepared);
+    facts.emitted = emittedPower(prepareScene(scene, {}, &facts.prepared));
     return facts;
 }
 
