@@ -290,7 +290,7 @@ def textured_room():
                  ["Metres. A closed room: a plastered wall, a floor of tiles that repeat, a screen that emits an image,",
                   "and under a small lamp a leaf that is cut out of a square by the opacity of its image."],
                  materials, meshes, [Node(name, name) for name in meshes],
-                 Camera((2.7, 1.9, 2.85), (1.2, .75, 1), math.radians(62), 1.333333), textured_images())
+                 Camera((.3, 1.9, 2.85), (1.75, .85, 1.05), math.radians(62), 1.333333), textured_images())
 
 
 def scenes():
