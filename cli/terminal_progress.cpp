@@ -49,10 +49,10 @@ void TerminalProgress::onAdvance(std::uint64_t done, std::uint64_t total) {
     const double rate = static_cast<double>(done) / seconds;
     std::string line = fmt::format("{}{:<14} ", title_, stage_);
     if (total > 0) {
-        constexpr int kWidth = 24;
+        const int width = title_.empty() ? 24 : 8;
         const double part = static_cast<double>(done) / static_cast<double>(total);
-        const int filled = static_cast<int>(part * kWidth);
-        line += fmt::format("[{:#<{}}{:<{}}] {}/{}  {:.3g}/s  {:.0f} s left", "", filled, "", kWidth - filled, done,
+        const int filled = static_cast<int>(part * width);
+        line += fmt::format("[{:#<{}}{:<{}}] {}/{}  {:.3g}/s  {:.0f} s left", "", filled, "", width - filled, done,
                             total, rate, static_cast<double>(total - done) / rate);
     } else {
         line += fmt::format("{}  {:.3g}/s", done, rate);
