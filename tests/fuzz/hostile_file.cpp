@@ -19,7 +19,7 @@
 
 #ifdef LAMBERT_SANITIZED
 /// Debian's OpenImageIO 2.4 leaves its PNG reader by longjmp and with it a message of some bytes, once per broken file.
-extern "C" const char* __lsan_default_suppressions() { return "leak:PngReadCallback"; }
+extern "C" const char* __lsan_default_suppressions() { return "leak:ImageInput::geterror"; }
 #endif
 
 namespace lambert {
