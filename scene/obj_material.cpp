@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace lambert {
@@ -63,8 +64,9 @@ void ObjMaterials::addLibraries(const std::string& argument) {
 
 /// Whether the scene's folder has this file, as namedFile finds it.
 bool ObjMaterials::isFile(const std::string& name) const {
+    std::error_code error;
     try {
-        return std::filesystem::is_regular_file(namedFile(folder_, nameOnDisk(name), options_));
+        return std::filesystem::is_regular_file(namedFile(folder_, nameOnDisk(name), options_), error);
     } catch (const InputError&) {
         return false; // outside the folder
     }

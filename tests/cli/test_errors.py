@@ -162,6 +162,15 @@ class WrongTargets(ErrorTest):
         self.assert_target_refused(USAGE, "-o", "light.obj", scene="box.obj", says="light.mtl")
         self.assert_target_refused(USAGE, "-o", "x.glb", "--json", "light.mtl", scene="box.obj", says="light.mtl")
 
+    def test_image_of_the_scene_is_not_overwritten(self):
+        self.copy_box(library="Light.mtl")
+        with open(self.folder / "Light.mtl", "a") as library:
+            library.write("newmtl picture\nmap_Kd -s 2 2 maps\\Wall.png\n")
+        self.write("box.obj", (self.folder / "box.obj").read_text().replace("Light.mtl", "LIGHT.MTL"))
+        (self.folder / "maps").mkdir()
+        self.write("maps/wall.png", "")
+        self.assert_target_refused(USAGE, "-o", "x.glb", "--image", "maps/wall.png", scene="box.obj", says="wall.png")
+
     def test_target_named_twice(self):
         here = f"../{self.folder.name}/x.glb"
         for names in (("x.glb", "x.glb"), ("x.glb", "./x.glb"), ("x.glb", here)):

@@ -124,6 +124,13 @@ TEST_F(ObjMaterials, FilesBesideASceneInTheCurrentFolderAreFound) {
     EXPECT_TRUE(result.scene.materials[0].isTextured());
 }
 
+TEST_F(ObjMaterials, NamesThatNoFileCanHaveAreMissing) {
+    const std::string name(5000, 'x');
+    const ReadResult result = readMtl("newmtl m\nKd 0.5\nmap_Kd " + name + "\n", {},
+                                      "usemtl m\nf 1 2 3\nmtllib " + name + " a.mtl\nmtllib .\nmtllib /dev/zero\n");
+    EXPECT_EQ(result.report.warnings.size(), 5U);
+}
+
 TEST_F(ObjMaterials, NamesBecomeUtf8) {
     folder.write("a.mtl", "newmtl B\xFC"
                           "cher\nKd 0.25\n");                           // Latin-1
