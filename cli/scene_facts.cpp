@@ -1,5 +1,6 @@
 #include "cli/scene_facts.h"
 
+#include "meshing/build_patch_mesh.h"
 #include "scene/input_file.h"
 
 #include <fmt/format.h>
@@ -164,6 +165,18 @@ private:
     std::vector<Finding> found_;
 };
 
+/// Watts or lumens of a prepared scene, textures and holes considered.
+glm::dvec3 emittedPower(const Scene& prepared) {
+    Progress progress;
+    MeshOptions options;
+    options.patches = 0;
+    const PatchMesh mesh = buildPatchMesh(prepared, options, progress);
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        sum += static_cast<double>(mesh.area[i]) * glm::dvec3(mesh.emittedRadiosity[i]);
+    return sum;
+}
+
 } // namespace
 
 SceneFacts gatherFacts(const Scene& scene, Progress& progress) {
@@ -173,20 +186,18 @@ SceneFacts gatherFacts(const Scene& scene, Progress& progress) {
     facts.nodes.resize(scene.nodes.size());
     for (const Polygon& polygon : scene.polygons) {
         const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
-        const Material& material = scene.materials[polygon.material];
         ++(polygon.isQuad() ? facts.quads : facts.triangles);
         facts.slivers += isSliver(scene, polygon) ? 1 : 0;
         add(facts.materials[polygon.material], area);
         add(facts.nodes[polygon.node], area);
         facts.area += area;
-        facts.emitted +=
-            area * (material.twoSided ? 2.0 : 1.0) * std::numbers::pi * glm::dvec3(material.emittedRadiance);
     }
     const glm::vec3 size = facts.bounds.size();
     facts.units = guessUnits(static_cast<double>(std::max({size.x, size.y, size.z})));
 
     progress.begin("check", 3);
     const Scene prepared = prepareScene(scene, {}, &facts.prepared);
+    facts.emitted = emittedPower(prepared);
     progress.advance();
     facts.surfaces = checkSurfaces(prepared);
     progress.advance();

@@ -20,7 +20,7 @@ struct SceneFacts {
     std::size_t triangles = 0, quads = 0;
     std::size_t slivers = 0; //!< height below 1e-4 of the longest edge
     double area = 0.0;       //!< m²
-    glm::dvec3 emitted{0.0}; //!< watts or lumens, fronts and second sides, without regard to textures
+    glm::dvec3 emitted{0.0}; //!< watts or lumens, fronts and second sides
 
     struct Part {
         std::size_t polygons = 0;

@@ -145,9 +145,9 @@ TEST(TexturedScenes, HolesKeepTheEnergyBalanceAndClosure) {
 
 TEST(TexturedScenes, HolesKeepReciprocityInTheMean) {
     const BakedScene baked = bake(leafOfTexture(), 0.2, 1, 16);
-    const Hemicube hemicube(baked.mesh, *baked.rays, {128, false, 1});
+    const Hemicube hemicube(baked.mesh, *baked.rays, {.resolution = 128, .randomRotation = false});
     Progress progress;
-    const FormFactorMatrix matrix = computeMatrix(hemicube, progress);
+    const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Float, progress);
     // Between the leaf's upper side and the room.
     double up = 0.0;
     double down = 0.0;
@@ -155,11 +155,11 @@ TEST(TexturedScenes, HolesKeepReciprocityInTheMean) {
         return baked.scene->materials[baked.mesh.material[i]].name == "leaf" && baked.mesh.normal[i].z > 0.0F;
     };
     for (std::size_t i = 0; i < baked.mesh.size(); ++i)
-        for (const FormFactor& entry : matrix.rows[i].entries) {
-            const double flow = static_cast<double>(baked.mesh.area[i]) * static_cast<double>(entry.value);
-            if (isLeaf(i) && !isLeaf(entry.patch)) up += flow;
-            if (!isLeaf(i) && isLeaf(entry.patch)) down += flow;
-        }
+        matrix.visit(i, [&](std::uint32_t j, double factor) {
+            const double flow = static_cast<double>(baked.mesh.area[i]) * factor;
+            if (isLeaf(i) && !isLeaf(j)) up += flow;
+            if (!isLeaf(i) && isLeaf(j)) down += flow;
+        });
     EXPECT_NEAR(up, down, 0.02 * up); // centres for patches; texel borders within a pixel
 }
 
