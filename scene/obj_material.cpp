@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <limits>
