@@ -248,6 +248,7 @@ float Texture::opacity(int x, int y) const {
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
+    if (std::filesystem::file_size(path, error) == 0) throw InputError("the file is empty");
     const std::string bytes = readInputFile(path);
     refuseHostileImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     return read(path.string(), nullptr, path.filename().string(), content);

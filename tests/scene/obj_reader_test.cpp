@@ -286,7 +286,7 @@ TEST_F(ObjReader, RejectsWhatIsNotAReadableFile) {
     expectInputError(folder.path() / "none.obj", "none.obj: no such file");
     std::filesystem::create_directory(folder.path() / "folder.obj");
     expectInputError(folder.path() / "folder.obj", "folder.obj: found a folder");
-    expectInputError(folder.write("scene.fbx", "x"), "allowed are .obj, .gltf, .glb, .ply, .stl, .mgf");
+    expectInputError(folder.write("scene.fbx", "x"), "allowed are .gltf, .glb, .obj, .ply, .stl and .mgf");
     expectInputError(folder.write("scene", "x"), "found the extension \"\"");
 }
 
