@@ -197,8 +197,8 @@ void printSummary(const InfoReportInput& in) {
                surfaces.inconsistentEdges);
     fmt::print("backs       {:.2g} % of the rays between surfaces meet black backs, {:.2g} % of those from lights\n",
                100.0 * facts.backs.fraction, 100.0 * facts.backsFromLights.fraction);
-    fmt::print("emitted     {:.5g} {:.5g} {:.5g} (r g b, W or lm){}\n", facts.emitted.x, facts.emitted.y,
-               facts.emitted.z, in.read.scene.textures.empty() ? "" : ", not counting textures");
+    fmt::print("emitted     {:.5g} {:.5g} {:.5g} (r g b, W or lm)\n", facts.emitted.x, facts.emitted.y,
+               facts.emitted.z);
 }
 
 void printLightsAndCameras(const Scene& scene) {
