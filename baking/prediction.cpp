@@ -94,7 +94,7 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
         predictIterations(pilot.reflected, options.jacobi) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;
     result.matrixBytes =
-        static_cast<std::uint64_t>(entries * static_cast<double>(sizeof(FormFactor)) +
+        static_cast<std::uint64_t>(entries * bytesPerFactor(MatrixStorage::Float) +
                                    patches * (static_cast<double>(sizeof(FormFactorRow)) + kBytesPerRow));
     result.peakMemory = peakMemoryBytes() + result.matrixBytes + static_cast<std::uint64_t>(kBytesPerPatch * patches);
     return result;
