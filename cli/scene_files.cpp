@@ -6,7 +6,9 @@
 #include "scene/input_file.h"
 #include "scene/mgf_file.h"
 #include "scene/obj_lines.h"
+#include "scene/obj_mtl.h"
 #include "scene/overrides_file.h"
+#include "scene/scene_reader.h"
 
 #include <nlohmann/json.hpp>
 
@@ -19,26 +21,35 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One name with spaces in it, or several names: what is no file does no harm.
-void addNames(std::vector<fs::path>& files, const fs::path& folder, std::string_view names) {
-    files.push_back(folder / names);
-    for (std::string_view word = nextWord(names); !word.empty(); word = nextWord(names)) files.push_back(folder / word);
-}
-
-void addTexturesOfMtl(std::vector<fs::path>& files, const fs::path& library) {
+/// The names of the images of a material library, as written; what cannot be read has none.
+std::vector<std::string> imagesOfMtl(const fs::path& path) {
+    std::vector<std::string> images;
     try {
-        ObjLines lines(library);
-        while (const auto line = lines.next())
-            if (line->keyword.starts_with("map_")) addNames(files, library.parent_path(), line->rest);
-    } catch (const InputError&) { // the reader will say what is wrong
+        ObjLines lines(path);
+        for (const MtlMaterial& material : readMtl(lines).materials)
+            for (const auto* map : {&material.diffuseMap, &material.emissionMap, &material.opacityMap})
+                if (*map) images.push_back((*map)->file);
+    } catch (const InputError&) { // reading the scene tells what is wrong
     }
+    return images;
 }
 
 void addFilesOfObj(std::vector<fs::path>& files, const fs::path& scene) {
+    ReadOptions anywhere;
+    anywhere.allowOutsideFiles = true;
+    const auto named = [&](std::string_view name) {
+        return namedFile(scene.parent_path(), std::string(name), anywhere);
+    };
     ObjLines lines(scene);
-    while (const auto line = lines.next())
-        if (line->keyword == "mtllib") addNames(files, scene.parent_path(), line->rest);
-    for (std::size_t i = 1, libraries = files.size(); i < libraries; ++i) addTexturesOfMtl(files, fs::path(files[i]));
+    while (const auto line = lines.next()) {
+        if (line->keyword != "mtllib") continue;
+        files.push_back(named(line->rest)); // one name with spaces in it, or several names
+        std::string_view rest = line->rest;
+        for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) files.push_back(named(word));
+    }
+    const std::vector<fs::path> libraries(files.begin() + 1, files.end());
+    for (const fs::path& library : libraries)
+        for (const std::string& image : imagesOfMtl(library)) files.push_back(named(image));
 }
 
 void addFilesOfGltf(std::vector<fs::path>& files, const fs::path& scene) {
