@@ -22,6 +22,7 @@ namespace {
 
 constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finite
 constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
+constexpr std::size_t kMostFanCorners = 256;
 constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
 constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
@@ -328,6 +329,11 @@ bool SceneBuilder::addSplit() {
     std::optional<std::vector<std::array<std::uint32_t, 3>>> triangles;
     if (size > 0.0) triangles = triangulatePolygon(projected(points, normal / size), points.size());
     const bool fan = !triangles || triangles->empty();
+    // A fan of thousands lies over itself thousands of times: whatever it was meant to be, it is not that.
+    if (fan && corners_.size() > kMostFanCorners) {
+        ++droppedFans_;
+        return false;
+    }
     if (fan) {
         triangles.emplace();
         for (std::uint32_t k = 1; k + 1 < corners_.size(); ++k) triangles->push_back({0, k, k + 1});
@@ -380,6 +386,9 @@ ReadResult SceneBuilder::finish() {
                                      "finite, {} without area",
                                      file_, report.inputPolygons, report.nonFinitePolygons, report.degeneratePolygons));
     }
+    if (droppedFans_ > 0)
+        warn(fmt::format("{} polygons of more than {} corners cross themselves and were dropped", droppedFans_,
+                         kMostFanCorners));
     if (fans_ > 0)
         warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
     result_.report.warnings = mergeWarnings(result_.report.warnings);

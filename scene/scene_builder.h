@@ -120,6 +120,7 @@ private:
     ReadResult result_;
     std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;
+    std::size_t droppedFans_ = 0;
     // Of the polygon at work, without repeated vertices:
     std::vector<std::uint32_t> corners_; //!< the vertices
     std::vector<CornerSurface> surface_; //!< #corners_, or empty
