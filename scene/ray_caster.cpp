@@ -1,17 +1,10 @@
 #include "scene/ray_caster.h"
 
-#include "core/error.h"
 #include "core/vector_clones.h"
-#include "scene/surface.h"
+#include "scene/embree_scene.h"
 
-#include <embree3/rtcore.h>
-#include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <tbb/task_arena.h>
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -19,55 +12,10 @@ namespace lambert {
 
 namespace {
 
-bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-/// Embree's number of a geometry. Polygons with holes have one of their own, so that no others need a filter.
-enum GeometryId : unsigned { kOpaque = 0, kWithHoles = 1 };
-
-/// Polygons of one geometry. Embree knows them by their place in `polygons`.
-struct PolygonSet {
-    const Scene* scene = nullptr;
-    std::vector<std::uint32_t> polygons; //!< into Scene::polygons, ascending
-};
-
-/// The polygons as one quad geometry; a triangle repeats its last corner, and its chart is that of the quad's first half.
-RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
-    const Scene& scene = *set.scene;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), set.polygons.size()));
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), scene.positions.size()));
-    if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
-    for (const std::uint32_t index : set.polygons) {
-        const Polygon& polygon = scene.polygons[index];
-        const auto& v = polygon.vertices;
-        indices = std::copy_n(std::array{v[0], v[1], v[2], polygon.isQuad() ? v[3] : v[2]}.begin(), 4, indices);
-    }
-    for (const glm::vec3& position : scene.positions) {
-        // Unused vertices may be anything in the file; Embree must not see them.
-        const glm::vec3 p = isFinite(position) ? position : glm::vec3(0.0F);
-        vertices = std::copy_n(std::array{p.x, p.y, p.z}.begin(), 3, vertices);
-    }
-    return geometry;
-}
-
 /// Embree's filter: rejects the hits (at most 16 at once) that lie in a hole.
 void rejectHoles(const RTCFilterFunctionNArguments* query) {
-    const auto& set = *static_cast<const PolygonSet*>(query->geometryUserPtr);
-    for (unsigned lane = 0; lane < query->N; ++lane) {
-        if (query->valid[lane] == 0) continue;
-        const std::uint32_t polygon = set.polygons[RTCHitN_primID(query->hit, query->N, lane)];
-        const float u = RTCHitN_u(query->hit, query->N, lane);
-        const float v = RTCHitN_v(query->hit, query->N, lane);
-        if (isHole(*set.scene, set.scene->polygons[polygon], u, v)) query->valid[lane] = 0;
-    }
-}
-
-void attach(RTCScene target, RTCGeometry geometry, GeometryId id) {
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(target, geometry, id);
-    rtcReleaseGeometry(geometry);
+    for (unsigned lane = 0; lane < query->N; ++lane)
+        if (query->valid[lane] != 0 && liesInHole(*query, lane)) query->valid[lane] = 0;
 }
 
 LAMBERT_VECTOR_CLONES
@@ -138,33 +86,16 @@ RTCRay embreeRay(const Ray& ray) {
 } // namespace
 
 struct RayCaster::Impl {
-    const Scene* scene = nullptr;
+    explicit Impl(const Scene& source)
+        : scene(source),
+          bounds(boundsOf(source)),
+          anyOccluders(hasOccluders(source)),
+          embree(source, {.opaque = nullptr, .withHoles = rejectHoles}) {}
+
+    const Scene& scene;
     Bounds bounds;
-    float largestCoordinate = 0.0F;
-    bool hasOccluders = false;
-    RTCDevice device = nullptr;
-    RTCScene embree = nullptr;
-    std::array<PolygonSet, 2> sets; //!< by GeometryId
-
-    /// Sorts the polygons into those with holes and the others, and gives them to Embree.
-    void attachPolygons() {
-        for (PolygonSet& set : sets) set.scene = scene;
-        for (std::uint32_t i = 0; i < scene->polygons.size(); ++i)
-            sets[hasHoles(*scene, scene->polygons[i]) ? kWithHoles : kOpaque].polygons.push_back(i);
-        if (!sets[kOpaque].polygons.empty()) attach(embree, quadGeometry(device, sets[kOpaque]), kOpaque);
-        if (!anyHoles()) return;
-        const RTCGeometry geometry = quadGeometry(device, sets[kWithHoles]);
-        rtcSetGeometryUserData(geometry, &sets[kWithHoles]);
-        rtcSetGeometryIntersectFilterFunction(geometry, rejectHoles);
-        rtcSetGeometryOccludedFilterFunction(geometry, rejectHoles);
-        attach(embree, geometry, kWithHoles);
-    }
-
-    bool anyHoles() const { return !sets[kWithHoles].polygons.empty(); }
-
-    std::uint32_t polygonOf(unsigned geometry, unsigned primitive) const {
-        return anyHoles() ? sets[geometry].polygons[primitive] : primitive;
-    }
+    bool anyOccluders;
+    EmbreeScene embree;
 
     /// `rays` hold the origins, `packet` the directions.
     void trace(RTCRayHit16& rays, RayPacket& packet) const {
@@ -172,18 +103,13 @@ struct RayCaster::Impl {
         rtcInitIntersectContext(&context);
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         loadDirections(packet, rays);
-        rtcIntersect16(packet.active, embree, &context, &rays);
+        rtcIntersect16(packet.active, embree.handle(), &context, &rays);
         store(rays, packet);
-        if (anyHoles())
+        if (embree.anyHoles())
             for (int lane = 0; lane < RayPacket::kSize; ++lane)
                 if (packet.polygon[lane] != kNone)
-                    packet.polygon[lane] = polygonOf(rays.hit.geomID[lane], rays.hit.primID[lane]);
-        if (hasOccluders) turnOccluders(*scene, packet);
-    }
-
-    ~Impl() {
-        if (embree != nullptr) rtcReleaseScene(embree);
-        if (device != nullptr) rtcReleaseDevice(device);
+                    packet.polygon[lane] = embree.polygonOf(rays.hit.geomID[lane], rays.hit.primID[lane]);
+        if (anyOccluders) turnOccluders(scene, packet);
     }
 };
 
@@ -198,27 +124,7 @@ glm::vec3 polygonPoint(const Scene& scene, std::uint32_t polygon, float u, float
     return c + (1.0F - u) * (d - c) + (1.0F - v) * (b - c);
 }
 
-RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>()) {
-    impl_->scene = &scene;
-    impl_->bounds = boundsOf(scene);
-    const glm::vec3 largest = glm::max(glm::abs(impl_->bounds.lower), glm::abs(impl_->bounds.upper));
-    impl_->largestCoordinate = std::max({largest.x, largest.y, largest.z});
-    impl_->hasOccluders = std::any_of(scene.polygons.begin(), scene.polygons.end(),
-                                      [&](const Polygon& polygon) { return isOccluder(scene, polygon); });
-    impl_->device = rtcNewDevice(nullptr);
-    if (impl_->device == nullptr)
-        throw SystemError(
-            fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
-    impl_->embree = rtcNewScene(impl_->device);
-    rtcSetSceneFlags(impl_->embree, RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
-    impl_->attachPolygons();
-    // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
-    // (The device's own "threads" setting would limit oneTBB for the whole program.)
-    tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->embree); });
-    if (const RTCError error = rtcGetDeviceError(impl_->device); error != RTC_ERROR_NONE)
-        throw SystemError(fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
-}
-
+RayCaster::RayCaster(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 
@@ -228,12 +134,12 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     RTCRayHit query{};
     query.ray = embreeRay(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->embree, &context, &query);
+    rtcIntersect1(impl_->embree.handle(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    const std::uint32_t polygon = impl_->polygonOf(query.hit.geomID, query.hit.primID);
+    const std::uint32_t polygon = impl_->embree.polygonOf(query.hit.geomID, query.hit.primID);
     const bool front =
-        glm::dot(ray.direction, normal) < 0.0F && !isOccluder(*impl_->scene, impl_->scene->polygons[polygon]);
+        glm::dot(ray.direction, normal) < 0.0F && !isOccluder(impl_->scene, impl_->scene.polygons[polygon]);
     return Hit{polygon, query.hit.u, query.hit.v, query.ray.tfar, front};
 }
 
@@ -254,13 +160,13 @@ bool RayCaster::occluded(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay query = embreeRay(ray);
-    rtcOccluded1(impl_->embree, &context, &query);
+    rtcOccluded1(impl_->embree.handle(), &context, &query);
     return query.tfar < 0.0F;
 }
 
-const Scene& RayCaster::scene() const { return *impl_->scene; }
+const Scene& RayCaster::scene() const { return impl_->scene; }
 const Bounds& RayCaster::bounds() const { return impl_->bounds; }
 
-float RayCaster::originOffset(float size) const { return 1e-6F * impl_->largestCoordinate + 1e-5F * size; }
+float RayCaster::originOffset(float size) const { return coordinateTolerance(impl_->bounds) + 1e-5F * size; }
 
 } // namespace lambert

@@ -1,0 +1,89 @@
+#include "scene/embree_scene.h"
+
+#include "core/error.h"
+#include "scene/surface.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
+    const Scene& scene = *set.scene;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), set.polygons.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), scene.positions.size()));
+    if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
+    for (const std::uint32_t index : set.polygons) {
+        const Polygon& polygon = scene.polygons[index];
+        const auto& v = polygon.vertices;
+        indices = std::copy_n(std::array{v[0], v[1], v[2], polygon.isQuad() ? v[3] : v[2]}.begin(), 4, indices);
+    }
+    for (const glm::vec3& position : scene.positions) {
+        // Unused vertices may be anything in the file; Embree must not see them.
+        const glm::vec3 p = isFinite(position) ? position : glm::vec3(0.0F);
+        vertices = std::copy_n(std::array{p.x, p.y, p.z}.begin(), 3, vertices);
+    }
+    return geometry;
+}
+
+} // namespace
+
+EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) {
+    device_.reset(rtcNewDevice(nullptr));
+    if (device_ == nullptr)
+        throw SystemError(
+            fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+    embree_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(handle(), RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
+    for (PolygonSet& set : sets_) set.scene = &scene;
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i)
+        sets_[hasHoles(scene, scene.polygons[i]) ? kWithHoles : kOpaque].polygons.push_back(i);
+    attach(kOpaque, filters.opaque);
+    attach(kWithHoles, filters.withHoles);
+    // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
+    // (The device's own "threads" setting would limit oneTBB for the whole program.)
+    tbb::task_arena(1).execute([&] { rtcCommitScene(handle()); });
+    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+        throw SystemError(fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
+}
+
+void EmbreeScene::attach(GeometryId id, RTCFilterFunctionN filter) {
+    if (sets_[id].polygons.empty()) return;
+    RTCGeometry geometry = quadGeometry(device_.get(), sets_[id]);
+    rtcSetGeometryUserData(geometry, &sets_[id]);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(handle(), geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane) {
+    const auto& set = *static_cast<const PolygonSet*>(query.geometryUserPtr);
+    const std::uint32_t polygon = set.polygons[RTCHitN_primID(query.hit, query.N, lane)];
+    return isHole(*set.scene, set.scene->polygons[polygon], RTCHitN_u(query.hit, query.N, lane),
+                  RTCHitN_v(query.hit, query.N, lane));
+}
+
+float coordinateTolerance(const Bounds& bounds) {
+    const glm::vec3 largest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    return 1e-6F * std::max({largest.x, largest.y, largest.z});
+}
+
+bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool hasOccluders(const Scene& scene) {
+    return std::any_of(scene.polygons.begin(), scene.polygons.end(),
+                       [&](const Polygon& polygon) { return isOccluder(scene, polygon); });
+}
+
+} // namespace lambert

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace lambert {
+
+/// Polygons of one Embree geometry, which knows them by their place in `polygons`. User data of the geometry.
+struct PolygonSet {
+    const Scene* scene = nullptr;
+    std::vector<std::uint32_t> polygons; //!< into Scene::polygons, ascending
+};
+
+/// The source polygons of a scene as Embree holds them, all as quads (a triangle repeats its last corner, and its chart is
+/// that of the quad's first half). Only for the casters in this folder.
+class EmbreeScene {
+public:
+    /// What is called for every hit before it counts; null: nothing. For polygons with holes and for all others, so that
+    /// these need no filter. Its geometryUserPtr is a const PolygonSet.
+    struct Filters {
+        RTCFilterFunctionN opaque = nullptr;
+        RTCFilterFunctionN withHoles = nullptr;
+    };
+
+    /// `scene` must outlive it. Every polygon must be finite and have an area. Throws SystemError.
+    EmbreeScene(const Scene& scene, const Filters& filters);
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    RTCScene handle() const { return embree_.get(); }
+    bool anyHoles() const { return !sets_[kWithHoles].polygons.empty(); }
+    std::uint32_t polygonOf(unsigned geometry, unsigned primitive) const {
+        return anyHoles() ? sets_[geometry].polygons[primitive] : primitive;
+    }
+
+private:
+    /// Embree's number of a geometry.
+    enum GeometryId : unsigned { kOpaque = 0, kWithHoles = 1 };
+
+    void attach(GeometryId id, RTCFilterFunctionN filter);
+
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+
+    std::array<PolygonSet, 2> sets_; //!< by GeometryId
+    std::unique_ptr<RTCDeviceTy, Release> device_;
+    std::unique_ptr<RTCSceneTy, Release> embree_;
+};
+
+/// Whether a hit (the `lane`-th of a filter's query) lies in a hole of its polygon.
+bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane);
+
+/// Rounding of coordinates at the scene's scale (metres), generously: what is nearer cannot be told apart.
+float coordinateTolerance(const Bounds& bounds);
+
+bool isFinite(const glm::vec3& v);
+
+/// Whether the scene has any polygons that only block light.
+bool hasOccluders(const Scene& scene);
+
+} // namespace lambert
