@@ -1,6 +1,7 @@
 #include "core/low_discrepancy.h"
 
 #include "core/random.h"
+#include "core/vector_clones.h"
 
 #include <algorithm>
 #include <array>
@@ -149,6 +150,37 @@ std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed) {
     x ^= x * 0x05526C56U;
     x ^= x * 0x53A22864U;
     return reversedBits(x);
+}
+
+namespace {
+
+double withinUnit(std::uint32_t bits) { return (static_cast<double>(bits) + 0.5) * 0x1p-32; }
+
+/// Up to 256 points whose indices differ in the lowest eight bits only, `low` of which are those bits' part.
+LAMBERT_VECTOR_CLONES
+void scrambledRun(std::uint32_t high, const std::uint32_t* low, std::uint32_t seed, std::span<double> coordinates) {
+    const std::size_t count = coordinates.size();
+    double* coordinate = coordinates.data();
+    for (std::size_t k = 0; k < count; ++k) coordinate[k] = withinUnit(owenScrambled(high ^ low[k], seed));
+}
+
+} // namespace
+
+double scrambledSobol(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
+    return withinUnit(owenScrambled(sobol(index, dimension), seed));
+}
+
+void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<double> coordinates) {
+    constexpr std::uint32_t kRun = 256;
+    std::array<std::uint32_t, kRun> low{};
+    for (std::uint32_t k = 0; k < kRun; ++k) low[k] = sobol(k, dimension);
+    for (std::size_t done = 0; done < coordinates.size();) {
+        const std::uint32_t index = first + static_cast<std::uint32_t>(done);
+        const std::uint32_t place = index % kRun;
+        const std::size_t count = std::min<std::size_t>(kRun - place, coordinates.size() - done);
+        scrambledRun(sobol(index - place, dimension), low.data() + place, seed, coordinates.subspan(done, count));
+        done += count;
+    }
 }
 
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t seed) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace lambert {
 
@@ -33,6 +34,11 @@ std::uint32_t sobol(std::uint32_t index, std::uint32_t dimension);
 /// Nested uniform scrambling in base 2 (Owen 1995) of 32 bits after the point, by hashing.
 /// B. Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020.
 std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed);
+
+/// Coordinate `dimension` of the scrambled Sobol sequence, in (0, 1).
+double scrambledSobol(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed);
+/// The same of the points from `first` on, one per element of `coordinates`.
+void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<double> coordinates);
 
 /// The place of `index` in a random permutation of 0 ... count − 1 that the seed chooses; index < count.
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t seed);

@@ -2,6 +2,7 @@
 
 #include "core/low_discrepancy.h"
 #include "core/random.h"
+#include "core/vector_clones.h"
 
 #include <array>
 #include <cassert>
@@ -18,6 +19,14 @@ constexpr double kBelowOne = 1.0 - 0x1p-53;
 double randomNumber(std::uint32_t index, std::uint32_t dimension, std::uint64_t seed) {
     const auto bits = philox({index, dimension, 0, 0x53414D50}, seed);
     return static_cast<double>(((std::uint64_t{bits[0]} << 32) | bits[1]) >> 11) * 0x1p-53;
+}
+
+LAMBERT_VECTOR_CLONES
+void randomNumbers(std::uint32_t first, std::uint32_t dimension, std::uint64_t seed, std::span<double> numbers) {
+    const std::size_t count = numbers.size();
+    double* number = numbers.data();
+    for (std::size_t k = 0; k < count; ++k)
+        number[k] = randomNumber(first + static_cast<std::uint32_t>(k), dimension, seed);
 }
 
 std::uint32_t roundedUpRoot(std::uint32_t n) {
@@ -59,8 +68,21 @@ double SamplePoints::at(std::uint32_t index, std::uint32_t dimension) const {
     case Sampler::Sobol:
         break;
     }
-    const std::uint32_t bits = owenScrambled(sobol(index, dimension), static_cast<std::uint32_t>(keys_[dimension]));
-    return (static_cast<double>(bits) + 0.5) * 0x1p-32;
+    return scrambledSobol(index, dimension, static_cast<std::uint32_t>(keys_[dimension]));
+}
+
+void SamplePoints::fill(std::uint32_t first, std::uint32_t dimension, std::span<double> coordinates) const {
+    assert(dimension < dimensions() && coordinates.size() <= count_ - first);
+    if (sampler_ == Sampler::Sobol) {
+        scrambledSobol(first, dimension, static_cast<std::uint32_t>(keys_[dimension]), coordinates);
+        return;
+    }
+    if (sampler_ == Sampler::Random) {
+        randomNumbers(first, dimension, seed_, coordinates);
+        return;
+    }
+    for (std::size_t k = 0; k < coordinates.size(); ++k)
+        coordinates[k] = at(first + static_cast<std::uint32_t>(k), dimension);
 }
 
 /// Dimensions 2k and 2k + 1 share a grid of at least `count` cells, of which each point has one of its own; which one is

@@ -58,6 +58,10 @@ public:
     double back(std::size_t patch) const { return rows_[patch].back; }
     double out(std::size_t patch) const { return rows_[patch].out; }
     std::size_t entryCount(std::size_t patch) const { return rows_[patch].count; }
+    /// Whether nothing is known of the patch: no line has met it. Such rows do not sum to 1.
+    bool isEmpty(std::size_t patch) const {
+        return rows_[patch].count == 0 && rows_[patch].back == 0.0 && rows_[patch].out == 0.0;
+    }
 
     /// Calls `use(j, F_ij)` for every stored factor of a row, ascending by j.
     template <typename Use>

@@ -99,9 +99,10 @@ RepairReport repair(FormFactorMatrix& matrix, std::span<const float> area, std::
     const std::size_t count = matrix.size();
     const ExchangeAreas exchange = merged(matrix, area, weight, report);
 
-    std::vector<double> target(count); // A_i s_i
+    std::vector<double> target(count, 0.0); // A_i s_i
     for (std::size_t i = 0; i < count; ++i)
-        target[i] = static_cast<double>(area[i]) * std::max(0.0, 1.0 - matrix.back(i) - matrix.out(i));
+        if (!matrix.isEmpty(i))
+            target[i] = static_cast<double>(area[i]) * std::max(0.0, 1.0 - matrix.back(i) - matrix.out(i));
     std::vector<double> scale(count, 1.0), sum(count, 0.0);
     const auto error = [&](std::size_t i) {
         return std::abs(scale[i] * sum[i] - target[i]) / static_cast<double>(area[i]);

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "meshing/build_patch_mesh.h"
+#include "meshing/prepare.h"
+#include "scene/example_scenes.h"
+#include "scene/ray_caster.h"
+#include "scene/scene_reader.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// Two ways to do the same work, measured in turns on one thread, because a shared machine's speed drifts. Medians are
+/// those of the turns.
+class Comparison {
+public:
+    Comparison() { setThreadCount(1); }
+    ~Comparison() { setThreadCount(0); }
+    Comparison(const Comparison&) = delete;
+    Comparison& operator=(const Comparison&) = delete;
+
+    /// One turn: `bare` does `rays` rays' work first, then `ours` the same.
+    template <typename Bare, typename Ours>
+    void turn(double rays, Bare&& bare, Ours&& ours) {
+        Stopwatch watch;
+        bare();
+        const double bareSeconds = watch.lap();
+        ours();
+        add(rays, bareSeconds, watch.lap());
+    }
+    void add(double rays, double bareSeconds, double ourSeconds) {
+        bare_.push_back(1e-6 * rays / bareSeconds);
+        ours_.push_back(1e-6 * rays / ourSeconds);
+        ratio_.push_back(bareSeconds / ourSeconds);
+    }
+
+    void report(benchmark::State& state) {
+        state.counters["bare_Mrays/s"] = median(bare_);
+        state.counters["ours_Mrays/s"] = median(ours_);
+        state.counters["ratio"] = median(ratio_);
+    }
+
+private:
+    static double median(std::vector<double>& values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    }
+    std::vector<double> bare_, ours_, ratio_;
+};
+
+/// A scene with what traces rays through it and patches.
+struct BenchmarkScene {
+    BenchmarkScene(const Scene& input, std::size_t patches) : scene(prepareScene(input)), rays(scene) {
+        MeshOptions options;
+        options.patches = patches;
+        Progress progress;
+        mesh = buildPatchMesh(scene, options, progress);
+    }
+    Scene scene;
+    RayCaster rays;
+    PatchMesh mesh;
+};
+
+/// Registers a comparison on the closed cube, the table room, the Cornell box, and the staircase if LAMBERT_SCENES has it.
+/// `compare(state, scene)` is called with a BenchmarkScene of 5,000 patches or more.
+template <typename Compare>
+void registerComparison(const std::string& name, int turns, Compare compare) {
+    const auto add = [&](const std::string& sceneName, auto makeScene) {
+        benchmark::RegisterBenchmark((name + "/" + sceneName).c_str(), [=](benchmark::State& state) {
+            const BenchmarkScene scene(makeScene(), 5000);
+            compare(state, scene);
+        })->Iterations(turns)->Unit(benchmark::kMillisecond);
+    };
+    add("closed_cube", [] {
+        const Material wall = greyMaterial("wall", 0.5F, 1.0F);
+        return boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall});
+    });
+    add("table_room", [] { return readScene(LAMBERT_DATA "/table_room.gltf").scene; });
+    add("cornell_box", [] { return readScene(LAMBERT_DATA "/cornell_box.obj").scene; });
+    if (const char* folder = std::getenv("LAMBERT_SCENES"); folder != nullptr)
+        add("staircase", [folder] { return readScene(fmt::format("{}/staircase/staircase.obj", folder)).scene; });
+}
+
+} // namespace lambert

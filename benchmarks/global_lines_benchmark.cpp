@@ -1,0 +1,104 @@
+/// Global lines against bare Embree that finds all hits of the same lines in the same order, with a filter that notes and
+/// rejects them; in turns, on one thread.
+///
+/// "Bare" gets its lines from memory and forgets the hits of a packet with the next; global lines are also made, put into
+/// order, their crossings sorted, their patches found, and the spans counted.
+
+#include "benchmarks/bare_embree.h"
+#include "benchmarks/comparison.h"
+#include "formfactors/global_lines.h"
+
+namespace lambert {
+namespace {
+
+constexpr std::uint32_t kLines = 1U << 18;
+
+struct HitList {
+    RTCIntersectContext context;
+    std::array<std::vector<Crossing>, LinePacket::kSize> crossings;
+};
+
+void noteHit(const RTCFilterFunctionNArguments* arguments) {
+    auto& list = *reinterpret_cast<HitList*>(arguments->context);
+    RTCHitN* hit = arguments->hit;
+    RTCRayN* ray = arguments->ray;
+    const unsigned n = arguments->N;
+    for (unsigned lane = 0; lane < n; ++lane) {
+        if (arguments->valid[lane] == 0) continue;
+        arguments->valid[lane] = 0;
+        const float facing = RTCHitN_Ng_x(hit, n, lane) * RTCRayN_dir_x(ray, n, lane) +
+                             RTCHitN_Ng_y(hit, n, lane) * RTCRayN_dir_y(ray, n, lane) +
+                             RTCHitN_Ng_z(hit, n, lane) * RTCRayN_dir_z(ray, n, lane);
+        list.crossings[RTCRayN_id(ray, n, lane)].push_back({RTCRayN_tfar(ray, n, lane), RTCHitN_u(hit, n, lane),
+                                                            RTCHitN_v(hit, n, lane), RTCHitN_primID(hit, n, lane),
+                                                            facing < 0.0F});
+    }
+}
+
+std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
+    HitList list;
+    rtcInitIntersectContext(&list.context);
+    alignas(64) RTCRay16 rays;
+    std::size_t hits = 0;
+    for (const LinePacket& packet : packets) {
+        for (unsigned lane = 0; lane < 16; ++lane) {
+            rays.tnear[lane] = 0.0F;
+            rays.tfar[lane] = 1.0F;
+            rays.time[lane] = 0.0F;
+            rays.mask[lane] = ~0U;
+            rays.id[lane] = lane;
+            rays.flags[lane] = 0;
+        }
+        std::copy_n(packet.originX, 16, rays.org_x);
+        std::copy_n(packet.originY, 16, rays.org_y);
+        std::copy_n(packet.originZ, 16, rays.org_z);
+        std::copy_n(packet.directionX, 16, rays.dir_x);
+        std::copy_n(packet.directionY, 16, rays.dir_y);
+        std::copy_n(packet.directionZ, 16, rays.dir_z);
+        rtcOccluded16(packet.active, scene, &list.context, &rays);
+        for (std::vector<Crossing>& crossings : list.crossings) {
+            hits += crossings.size();
+            crossings.clear();
+        }
+    }
+    return hits;
+}
+
+void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, LineSet set) {
+    const BareEmbree bare(scene.scene, noteHit);
+    const LineCaster caster(scene.scene);
+    Comparison comparison;
+    Progress progress;
+    std::size_t hits = 0;
+    std::uint64_t seed = 0;
+    for (auto _ : state) {
+        const GlobalLines lines(scene.mesh, caster, {.lines = kLines, .set = set, .seed = ++seed});
+        GlobalLineCounts counts(scene.mesh.size());
+        IsotropicLines::Block block;
+        double bareSeconds = 0.0;
+        for (std::uint64_t b = 0; b < lines.lines().blockCount(); ++b) {
+            lines.lines().fill(b, block);
+            Stopwatch watch;
+            hits += trace(bare.handle(), block.packets);
+            bareSeconds += watch.lap();
+        }
+        Stopwatch watch;
+        lines.trace(counts, progress);
+        comparison.add(kLines, bareSeconds, watch.lap());
+    }
+    comparison.report(state);
+    state.counters["hits/line"] = static_cast<double>(hits) / (static_cast<double>(kLines) * static_cast<double>(seed));
+}
+
+const bool registered = [] {
+    registerComparison("global_lines_chords", 9, [](benchmark::State& state, const BenchmarkScene& scene) {
+        compareGlobalLines(state, scene, LineSet::Chords);
+    });
+    registerComparison("global_lines_bundles", 9, [](benchmark::State& state, const BenchmarkScene& scene) {
+        compareGlobalLines(state, scene, LineSet::Bundles);
+    });
+    return true;
+}();
+
+} // namespace
+} // namespace lambert
