@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/parallel.h"
-#include "core/stopwatch.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
@@ -14,9 +13,30 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <time.h>
+
 namespace lambert {
+
+/// CPU time of this thread: a shared machine's other work does not count.
+class CpuStopwatch {
+public:
+    /// Seconds since the last call, or since the start.
+    double lap() {
+        const double now = seconds();
+        return now - std::exchange(lap_, now);
+    }
+
+private:
+    static double seconds() {
+        timespec time{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+    double lap_ = seconds();
+};
 
 /// Two ways to do the same work, measured in turns on one thread, because a shared machine's speed drifts. Medians are
 /// those of the turns.
@@ -27,15 +47,7 @@ public:
     Comparison(const Comparison&) = delete;
     Comparison& operator=(const Comparison&) = delete;
 
-    /// One turn: `bare` does `rays` rays' work first, then `ours` the same.
-    template <typename Bare, typename Ours>
-    void turn(double rays, Bare&& bare, Ours&& ours) {
-        Stopwatch watch;
-        bare();
-        const double bareSeconds = watch.lap();
-        ours();
-        add(rays, bareSeconds, watch.lap());
-    }
+    /// One turn: seconds in which both did the work of `rays` rays.
     void add(double rays, double bareSeconds, double ourSeconds) {
         bare_.push_back(1e-6 * rays / bareSeconds);
         ours_.push_back(1e-6 * rays / ourSeconds);
@@ -75,10 +87,13 @@ struct BenchmarkScene {
 template <typename Compare>
 void registerComparison(const std::string& name, int turns, Compare compare) {
     const auto add = [&](const std::string& sceneName, auto makeScene) {
-        benchmark::RegisterBenchmark((name + "/" + sceneName).c_str(), [=](benchmark::State& state) {
-            const BenchmarkScene scene(makeScene(), 5000);
-            compare(state, scene);
-        })->Iterations(turns)->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark((name + "/" + sceneName).c_str(),
+                                     [=](benchmark::State& state) {
+                                         const BenchmarkScene scene(makeScene(), 5000);
+                                         compare(state, scene);
+                                     })
+            ->Iterations(turns)
+            ->Unit(benchmark::kMillisecond);
     };
     add("closed_cube", [] {
         const Material wall = greyMaterial("wall", 0.5F, 1.0F);

@@ -78,11 +78,11 @@ void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, Li
         double bareSeconds = 0.0;
         for (std::uint64_t b = 0; b < lines.lines().blockCount(); ++b) {
             lines.lines().fill(b, block);
-            Stopwatch watch;
+            CpuStopwatch watch;
             hits += trace(bare.handle(), block.packets);
             bareSeconds += watch.lap();
         }
-        Stopwatch watch;
+        CpuStopwatch watch;
         lines.trace(counts, progress);
         comparison.add(kLines, bareSeconds, watch.lap());
     }

@@ -65,7 +65,7 @@ void compareHemicube(benchmark::State& state, const BenchmarkScene& scene) {
         for (std::size_t k = 0; k < kRows; ++k) {
             const auto patch = static_cast<std::uint32_t>(k * mesh.size() / kRows);
             const std::vector<RayPacket> packets = packetsOf(hemicube, mesh, patch);
-            Stopwatch watch;
+            CpuStopwatch watch;
             hits += trace(bare.handle(), hemicube.viewpoint(patch).origin, packets);
             bareSeconds += watch.lap();
             hemicube.row(patch, accumulator);

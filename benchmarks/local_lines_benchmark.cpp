@@ -42,8 +42,9 @@ std::size_t trace(RTCScene scene, const std::vector<Ray>& rays) {
 std::vector<Ray> shuffled(const std::vector<Ray>& rays) {
     std::vector<std::uint32_t> order(rays.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [](std::uint32_t a, std::uint32_t b) { return philox({a, 0, 0, 0}, 1) < philox({b, 0, 0, 0}, 1); });
+    std::sort(order.begin(), order.end(), [](std::uint32_t a, std::uint32_t b) {
+        return philox({a, 0, 0, 0}, 1) < philox({b, 0, 0, 0}, 1);
+    });
     std::vector<Ray> result;
     for (const std::uint32_t i : order) result.push_back(rays[i]);
     return result;
@@ -62,7 +63,7 @@ void compareLocalLines(benchmark::State& state, const BenchmarkScene& scene) {
         for (std::size_t k = 0; k < kRows; ++k) {
             const auto patch = static_cast<std::uint32_t>(k * mesh.size() / kRows);
             const std::vector<Ray> rays = shuffled(lines.lines(patch));
-            Stopwatch watch;
+            CpuStopwatch watch;
             benchmark::DoNotOptimize(trace(bare.handle(), rays));
             bareSeconds += watch.lap();
             lines.row(patch, accumulator);

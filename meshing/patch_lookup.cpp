@@ -155,21 +155,25 @@ void PatchLookup::addPatches(const Scene& scene, const Polygon& polygon, std::ui
     const std::vector<PatchCell> pairs =
         rasterise(std::span(gridCorners_).subspan(locator.firstCorner), locator.columns, locator.rows);
     std::vector<std::uint32_t> patches;
+    KnownSplits known;
     auto pair = pairs.begin();
     for (std::uint32_t cell = 0; cell < locator.columns * locator.rows; ++cell) {
         auto end = pair;
         patches.clear();
         for (; end != pairs.end() && end->cell == cell; ++end) patches.push_back(end->patch);
-        cells_.push_back(codeFor(locator, patches));
+        cells_.push_back(codeFor(locator, patches, known));
         pair = end;
     }
     locators_.push_back(locator);
 }
 
 /// The code of a cell into which the given patches may reach.
-std::uint32_t PatchLookup::codeFor(const Locator& locator, std::span<const std::uint32_t> patches) {
+std::uint32_t PatchLookup::codeFor(const Locator& locator, std::span<const std::uint32_t> patches, KnownSplits& known) {
     if (patches.size() == 1) return patches[0];
     if (patches.size() == 2) {
+        const auto [split, isNew] =
+            known.try_emplace({patches[0], patches[1]}, kSplit + static_cast<std::uint32_t>(splits_.size()));
+        if (!isNew) return split->second;
         const glm::vec2* one = gridCorners_.data() + locator.firstCorner + 4 * std::size_t{patches[0]};
         const glm::vec2* two = gridCorners_.data() + locator.firstCorner + 4 * std::size_t{patches[1]};
         for (std::size_t i = 0; i < 4; ++i) {
@@ -179,9 +183,10 @@ std::uint32_t PatchLookup::codeFor(const Locator& locator, std::span<const std::
                 if (a == b || a != two[(k + 1) % 4] || b != two[k]) continue;
                 const glm::vec2 normal(a.y - b.y, b.x - a.x); // to the left, where `one` lies
                 splits_.push_back({normal, normal.x * a.x + normal.y * a.y, patches[0], patches[1]});
-                return kSplit + static_cast<std::uint32_t>(splits_.size() - 1);
+                return split->second;
             }
         }
+        known.erase(split);
     }
     // Also for a cell outside the polygon, which a rounded point may fall into: it has no candidates.
     const auto code = kSearch + static_cast<std::uint32_t>(candidates_.size());
@@ -235,14 +240,34 @@ void PatchLookup::cells16(const Locator& locator, const float (&u)[16], const fl
     }
 }
 
+/// Patches, relative to the first, of the cells' codes: as decode, without branches, which these unpredictable cells would make
+/// expensive. Returns whether some cell has to be searched.
+LAMBERT_VECTOR_CLONES
+bool PatchLookup::decode16(const std::uint32_t* cells, const Split* splits, const float (&x)[16], const float (&y)[16],
+                           const std::uint32_t (&cell)[16], std::uint32_t (&code)[16], std::uint32_t (&patch)[16]) {
+    std::uint32_t highest = 0;
+    for (int lane = 0; lane < 16; ++lane) code[lane] = cells[cell[lane]];
+    for (int lane = 0; lane < 16; ++lane) {
+        const bool isSplit = code[lane] - kSplit < kSearch - kSplit;
+        const Split& split = splits[isSplit ? code[lane] - kSplit : 0];
+        const float side = split.normal.x * x[lane] + split.normal.y * y[lane];
+        const std::uint32_t chosen = side >= split.offset ? split.inside : split.outside;
+        patch[lane] = isSplit ? chosen : code[lane];
+        highest = std::max(highest, code[lane]);
+    }
+    return highest >= kSearch;
+}
+
 void PatchLookup::locate16(const Entry& entry, const float (&u)[16], const float (&v)[16],
                            std::uint32_t (&patch)[16]) const {
     alignas(64) float x[16], y[16];
-    alignas(64) std::uint32_t cell[16];
+    alignas(64) std::uint32_t cell[16], code[16];
     const Locator& locator = locators_[entry.locator];
     cells16(locator, u, v, x, y, cell);
-    for (int lane = 0; lane < 16; ++lane)
-        patch[lane] = entry.first + decode(locator, cells_[cell[lane]], {x[lane], y[lane]});
+    if (decode16(cells_.data(), splits_.data(), x, y, cell, code, patch))
+        for (int lane = 0; lane < 16; ++lane)
+            if (code[lane] >= kSearch) patch[lane] = search(locator, code[lane] - kSearch, {x[lane], y[lane]});
+    for (std::uint32_t& p : patch) p += entry.first;
 }
 
 void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],

@@ -8,7 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lambert {
@@ -93,14 +95,17 @@ private:
         const std::size_t half = u + v <= 1.0F ? 0 : 1;
         return locator.origin[half] + u * locator.axisU[half] + v * locator.axisV[half];
     }
-    /// A cell that only one edge between two patches crosses.
+    /// An edge between two patches, for the cells that no other crosses.
     struct Split {
         glm::vec2 normal;
         float offset;
         std::uint32_t inside, outside; ///< patches where normal · point >= offset, and where not
     };
 
-    std::uint32_t codeFor(const Locator& locator, std::span<const std::uint32_t> patches);
+    /// Codes of the edges between patches, the smaller one first.
+    using KnownSplits = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
+
+    std::uint32_t codeFor(const Locator& locator, std::span<const std::uint32_t> patches, KnownSplits& known);
     std::uint32_t decode(const Locator& locator, std::uint32_t code, glm::vec2 point) const {
         if (code < kSplit) return code;
         if (code >= kSearch) return search(locator, code - kSearch, point);
@@ -109,6 +114,8 @@ private:
     }
     std::uint32_t search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const;
     void locate16(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]) const;
+    static bool decode16(const std::uint32_t* cells, const Split* splits, const float (&x)[16], const float (&y)[16],
+                         const std::uint32_t (&cell)[16], std::uint32_t (&code)[16], std::uint32_t (&patch)[16]);
     static void cells16(const Locator& locator, const float (&u)[16], const float (&v)[16], float (&x)[16],
                         float (&y)[16], std::uint32_t (&cell)[16]);
 
@@ -117,9 +124,9 @@ private:
     static constexpr std::uint32_t kSplit = 0x80000000;  ///< codes from here: kSplit + index into splits_
     static constexpr std::uint32_t kSearch = 0xC0000000; ///< codes from here: kSearch + index into candidates_
     std::vector<std::uint32_t> cells_;                   ///< codes; below kSplit: the patch, relative to the first
-    std::vector<Split> splits_;
-    std::vector<std::uint32_t> candidates_; ///< per searched cell: how many, then the patches
-    std::vector<glm::vec2> gridCorners_;    ///< 4 per patch, in cells; a triangle repeats its last corner
+    std::vector<Split> splits_{Split{}};                 ///< the first for cells that have none
+    std::vector<std::uint32_t> candidates_;              ///< per searched cell: how many, then the patches
+    std::vector<glm::vec2> gridCorners_;                 ///< 4 per patch, in cells; a triangle repeats its last corner
 };
 
 } // namespace lambert
