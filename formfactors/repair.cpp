@@ -101,7 +101,7 @@ RepairReport repair(FormFactorMatrix& matrix, std::span<const float> area, std::
 
     std::vector<double> target(count, 0.0); // A_i s_i
     for (std::size_t i = 0; i < count; ++i)
-        if (!matrix.isEmpty(i))
+        if (weight[i] > 0.0)
             target[i] = static_cast<double>(area[i]) * std::max(0.0, 1.0 - matrix.back(i) - matrix.out(i));
     std::vector<double> scale(count, 1.0), sum(count, 0.0);
     const auto error = [&](std::size_t i) {

@@ -29,8 +29,8 @@ struct RepairReport {
 /// each row is computed alike (the smaller patch's row is the better one), N_i / A_i where N_i lines are counted.
 /// Closure: X_ij is multiplied by d_i d_j, d found by iterating d_i ← √(d_i A_i s_i / Σ_j X_ij d_j); see also R. L. van
 /// Leersum, "A method for determining a consistent set of radiation view factors", Int. J. Heat Fluid Flow 10(1), 1989.
-/// Keeps which pairs see each other; rows of which nothing is known stay empty. `area` and `weight` have #patches elements,
-/// above 0; the weight of an empty row may be 0.
+/// Keeps which pairs see each other. `area` and `weight` have #patches elements, above 0; a weight of 0 says that nothing is
+/// known of a patch (no line has met it): its row, which must be empty, stays so and does not count as failed.
 RepairReport repair(FormFactorMatrix& matrix, std::span<const float> area, std::span<const double> weight,
                     const RepairOptions& options = {});
 

@@ -77,13 +77,13 @@ struct ExactLine {
 /// A crossing and the plane in which it lies.
 struct ExactCrossing {
     Crossing crossing;
+    glm::dvec3 a;      ///< the polygon's first corner
     glm::dvec3 normal; ///< unit length
     double distance;   ///< in lengths of the direction
 
     ExactCrossing(const Scene& scene, const ExactLine& line, const Crossing& c)
-        : crossing(c), distance(static_cast<double>(c.distance)) {
+        : crossing(c), a(corner(scene, scene.polygons[c.polygon], 0)), distance(static_cast<double>(c.distance)) {
         const Polygon& polygon = scene.polygons[c.polygon];
-        const glm::dvec3 a(corner(scene, polygon, 0));
         const int last = polygon.size() - 1;
         normal = glm::normalize(
             glm::cross(glm::dvec3(corner(scene, polygon, 1)) - a, glm::dvec3(corner(scene, polygon, last)) - a));
@@ -99,6 +99,23 @@ bool precedes(const ExactCrossing& a, const ExactCrossing& b, double tolerance) 
         std::abs(glm::dot(a.normal, b.normal)) > kParallel && std::abs(a.distance - b.distance) <= tolerance;
     if ((coincident || a.distance == b.distance) && a.crossing.front != b.crossing.front) return a.crossing.front;
     return a.distance < b.distance;
+}
+
+/// Whether two crossings, the first of which is crossed first, only seem to be some: at the edge that their polygons have in
+/// common, in an order that these do not allow. Such a line passes the edge outside, nearer than float can tell.
+bool missBoth(const Scene& scene, const ExactCrossing& first, const ExactCrossing& second, double tolerance) {
+    if (first.crossing.front == second.crossing.front || second.distance - first.distance > tolerance) return false;
+    const Polygon& one = scene.polygons[first.crossing.polygon];
+    const Polygon& two = scene.polygons[second.crossing.polygon];
+    int common = 0;
+    double beyond = 0.0; // how far `two` lies before the front of `one`
+    for (int k = 0; k < two.size(); ++k) {
+        const auto end = one.vertices.begin() + one.size();
+        common += std::find(one.vertices.begin(), end, two.vertices[static_cast<std::size_t>(k)]) != end ? 1 : 0;
+        beyond += glm::dot(first.normal, glm::dvec3(corner(scene, two, k)) - first.a);
+    }
+    // In a corner that is seen from within a line comes through a back and meets a front, over a ridge the other way.
+    return common == 2 && (beyond > 0.0) == first.crossing.front;
 }
 
 /// Orders crossings [first, last), of which each is closer to the next than coordinates can tell. Returns the new end.
@@ -117,6 +134,10 @@ std::vector<Crossing>::iterator settle(const Scene& scene, const ExactLine& line
         order.insert(place, next);
     }
     for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k + 1 < order.size() && missBoth(scene, order[k], order[k + 1], tolerance)) {
+            ++k;
+            continue;
+        }
         const bool again = k > 0 && order[k].crossing.front == order[k - 1].crossing.front &&
                            order[k].distance - order[k - 1].distance <= tolerance;
         if (!again) *first++ = order[k].crossing;

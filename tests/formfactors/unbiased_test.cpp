@@ -1,11 +1,8 @@
 /// What every method based on rays must keep, on scenes with exact factors.
-#include "formfactors/closed_form.h"
+#include "exact_case.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/hemisphere.h"
 #include "formfactors/local_lines.h"
-#include "meshing/build_patch_mesh.h"
-#include "meshing/prepare.h"
-#include "scene/example_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -14,47 +11,6 @@
 
 namespace lambert {
 namespace {
-
-/// A scene whose polygons are the patches, with the exact factors of all pairs, fully visible.
-struct ExactCase {
-    explicit ExactCase(const Scene& source)
-        : scene(prepareScene(source)), rays(scene), mesh(wholePolygons(scene)), factor(mesh.size()) {
-        std::vector<std::vector<glm::dvec3>> polygons;
-        for (std::size_t i = 0; i < mesh.size(); ++i) {
-            polygons.emplace_back();
-            for (int k = 0; k < mesh.cornerCount(i); ++k) polygons.back().emplace_back(mesh.position(i, k));
-        }
-        for (std::size_t i = 0; i < mesh.size(); ++i)
-            for (std::size_t j = 0; j < mesh.size(); ++j)
-                factor[i].push_back(i == j ? 0.0 : polygonToPolygon(polygons[i], polygons[j]));
-    }
-
-    static PatchMesh wholePolygons(const Scene& scene) {
-        MeshOptions options;
-        options.patches = 0;
-        Progress progress;
-        return buildPatchMesh(scene, options, progress);
-    }
-
-    Scene scene;
-    RayCaster rays;
-    PatchMesh mesh;
-    std::vector<std::vector<double>> factor;
-};
-
-Scene closedBox(const glm::vec3& size) {
-    const Material wall = greyMaterial("wall", 0.5F, 1.0F);
-    return boxScene(size, {wall, wall, wall, wall, wall, wall});
-}
-
-constexpr glm::vec3 kCube6{1.0F, 1.0F, 1.0F};
-constexpr glm::vec3 kRoom432{4.0F, 3.0F, 2.5F};
-
-double entry(const FormFactorRow& row, std::uint32_t patch) {
-    for (const FormFactor& e : row.entries)
-        if (e.patch == patch) return e.value;
-    return 0.0;
-}
 
 FormFactorRow rowOf(const FormFactorMethod& method, std::uint32_t patch) {
     RowAccumulator accumulator(method.patchCount());
@@ -124,28 +80,23 @@ TEST(LocalLines, VarianceOfIndependentLinesIsBinomial) {
 double
 errorSlope(const ExactCase& exact, int seeds, std::span<const std::uint32_t> efforts,
            const std::function<std::unique_ptr<FormFactorMethod>(std::uint32_t effort, std::uint64_t seed)>& make) {
-    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+    std::vector<double> rays, error;
     for (const std::uint32_t effort : efforts) {
         double squares = 0.0;
-        double rays = 0.0;
+        double raysPerRow = 0.0;
         for (int seed = 0; seed < seeds; ++seed) {
             const auto method = make(effort, static_cast<std::uint64_t>(seed));
-            rays = static_cast<double>(method->raysPerRow());
+            raysPerRow = static_cast<double>(method->raysPerRow());
             for (std::uint32_t i = 0; i < exact.mesh.size(); ++i) {
                 const FormFactorRow row = rowOf(*method, i);
                 for (std::uint32_t j = 0; j < exact.mesh.size(); ++j)
                     squares += std::pow(entry(row, j) - exact.factor[i][j], 2.0);
             }
         }
-        const double x = std::log(rays);
-        const double y = 0.5 * std::log(squares);
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
+        rays.push_back(raysPerRow);
+        error.push_back(std::sqrt(squares));
     }
-    const auto n = static_cast<double>(efforts.size());
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    return logarithmicSlope(rays, error);
 }
 
 // Random lines: −1/2. Two jittered grids that are shuffled against each other lower the error, not its rate. Points that are
