@@ -154,26 +154,27 @@ std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed) {
 
 namespace {
 
-double withinUnit(std::uint32_t bits) { return (static_cast<double>(bits) + 0.5) * 0x1p-32; }
-
 /// Up to 256 points whose indices differ in the lowest eight bits only, `low` of which are those bits' part.
 LAMBERT_VECTOR_CLONES
-void scrambledRun(std::uint32_t high, const std::uint32_t* low, std::uint32_t seed, std::span<double> coordinates) {
+void scrambledRun(std::uint32_t high, const std::uint32_t* low, std::uint32_t seed, std::span<float> coordinates) {
     const std::size_t count = coordinates.size();
-    double* coordinate = coordinates.data();
-    for (std::size_t k = 0; k < count; ++k) coordinate[k] = withinUnit(owenScrambled(high ^ low[k], seed));
+    float* coordinate = coordinates.data();
+    for (std::size_t k = 0; k < count; ++k) coordinate[k] = uniformFloat(owenScrambled(high ^ low[k], seed));
 }
 
 } // namespace
 
 double scrambledSobol(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
-    return withinUnit(owenScrambled(sobol(index, dimension), seed));
+    return (static_cast<double>(owenScrambled(sobol(index, dimension), seed)) + 0.5) * 0x1p-32;
 }
 
-void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<double> coordinates) {
+void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<float> coordinates) {
     constexpr std::uint32_t kRun = 256;
     std::array<std::uint32_t, kRun> low{};
-    for (std::uint32_t k = 0; k < kRun; ++k) low[k] = sobol(k, dimension);
+    for (std::uint32_t bit = 0; bit < 8; ++bit) { // the sequence is linear in the index's bits
+        const std::uint32_t column = sobol(1U << bit, dimension);
+        for (std::uint32_t k = 0; k < 1U << bit; ++k) low[(1U << bit) + k] = low[k] ^ column;
+    }
     for (std::size_t done = 0; done < coordinates.size();) {
         const std::uint32_t index = first + static_cast<std::uint32_t>(done);
         const std::uint32_t place = index % kRun;

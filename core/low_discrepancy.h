@@ -37,8 +37,8 @@ std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed);
 
 /// Coordinate `dimension` of the scrambled Sobol sequence, in (0, 1).
 double scrambledSobol(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed);
-/// The same of the points from `first` on, one per element of `coordinates`.
-void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<double> coordinates);
+/// The same of the points from `first` on, one per element of `coordinates`, cut off after 24 bits.
+void scrambledSobol(std::uint32_t first, std::uint32_t dimension, std::uint32_t seed, std::span<float> coordinates);
 
 /// The place of `index` in a random permutation of 0 ... count − 1 that the seed chooses; index < count.
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t seed);

@@ -14,19 +14,20 @@ namespace lambert {
 namespace {
 
 constexpr double kBelowOne = 1.0 - 0x1p-53;
+constexpr std::uint32_t kStream = 0x53414D50;
 
 /// 53 random bits of a point's coordinate.
 double randomNumber(std::uint32_t index, std::uint32_t dimension, std::uint64_t seed) {
-    const auto bits = philox({index, dimension, 0, 0x53414D50}, seed);
+    const auto bits = philox({index, dimension, 0, kStream}, seed);
     return static_cast<double>(((std::uint64_t{bits[0]} << 32) | bits[1]) >> 11) * 0x1p-53;
 }
 
 LAMBERT_VECTOR_CLONES
-void randomNumbers(std::uint32_t first, std::uint32_t dimension, std::uint64_t seed, std::span<double> numbers) {
+void randomNumbers(std::uint32_t first, std::uint32_t dimension, std::uint64_t seed, std::span<float> numbers) {
     const std::size_t count = numbers.size();
-    double* number = numbers.data();
+    float* number = numbers.data();
     for (std::size_t k = 0; k < count; ++k)
-        number[k] = randomNumber(first + static_cast<std::uint32_t>(k), dimension, seed);
+        number[k] = uniformFloat(philox({first + static_cast<std::uint32_t>(k), dimension, 0, kStream}, seed)[0]);
 }
 
 std::uint32_t roundedUpRoot(std::uint32_t n) {
@@ -71,7 +72,7 @@ double SamplePoints::at(std::uint32_t index, std::uint32_t dimension) const {
     return scrambledSobol(index, dimension, static_cast<std::uint32_t>(keys_[dimension]));
 }
 
-void SamplePoints::fill(std::uint32_t first, std::uint32_t dimension, std::span<double> coordinates) const {
+void SamplePoints::fill(std::uint32_t first, std::uint32_t dimension, std::span<float> coordinates) const {
     assert(dimension < dimensions() && coordinates.size() <= count_ - first);
     if (sampler_ == Sampler::Sobol) {
         scrambledSobol(first, dimension, static_cast<std::uint32_t>(keys_[dimension]), coordinates);
@@ -81,8 +82,10 @@ void SamplePoints::fill(std::uint32_t first, std::uint32_t dimension, std::span<
         randomNumbers(first, dimension, seed_, coordinates);
         return;
     }
-    for (std::size_t k = 0; k < coordinates.size(); ++k)
-        coordinates[k] = at(first + static_cast<std::uint32_t>(k), dimension);
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+        const double coordinate = at(first + static_cast<std::uint32_t>(k), dimension);
+        coordinates[k] = static_cast<float>(std::floor(coordinate * 0x1p24) * 0x1p-24);
+    }
 }
 
 /// Dimensions 2k and 2k + 1 share a grid of at least `count` cells, of which each point has one of its own; which one is

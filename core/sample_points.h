@@ -31,8 +31,9 @@ public:
     std::uint32_t dimensions() const { return static_cast<std::uint32_t>(keys_.size()); }
     /// Coordinate `dimension` of point `index`, in [0, 1).
     double at(std::uint32_t index, std::uint32_t dimension) const;
-    /// The same of the points from `first` on, one per element of `coordinates`; faster than one by one.
-    void fill(std::uint32_t first, std::uint32_t dimension, std::span<double> coordinates) const;
+    /// The same of the points from `first` on, one per element of `coordinates`, cut off after 24 bits. Much faster than one
+    /// by one for random and Sobol points.
+    void fill(std::uint32_t first, std::uint32_t dimension, std::span<float> coordinates) const;
 
 private:
     double stratified(std::uint32_t index, std::uint32_t dimension) const;

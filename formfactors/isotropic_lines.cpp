@@ -17,9 +17,9 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kChordsPerBlock = 1U << 14;
+constexpr std::uint32_t kChordsPerBlock = 1U << 13;
 constexpr std::uint32_t kMostPerBundle = 1U << 20;
-constexpr int kSize = LinePacket::kSize;
+constexpr std::size_t kSize = LinePacket::kSize;
 
 SamplePoints linePoints(const GlobalLineOptions& options) {
     if (options.lines < 1) throw UsageError("global lines: found 0 lines, allowed are 1 to 2^32 - 1");
@@ -43,14 +43,27 @@ inline float cosine(float x) {
                              y * (-1.0F / 720 + y * (1.0F / 40320 + y * (-1.0F / 3628800 + y * (1.0F / 479001600))))));
 }
 
+/// Coordinates of lines, as vector code sees them.
+struct LineArrays {
+    float *originX, *originY, *originZ, *directionX, *directionY, *directionZ;
+
+    explicit LineArrays(std::array<std::vector<float>, 6>& lines)
+        : originX(lines[0].data()),
+          originY(lines[1].data()),
+          originZ(lines[2].data()),
+          directionX(lines[3].data()),
+          directionY(lines[4].data()),
+          directionZ(lines[5].data()) {}
+};
+
 /// A sphere's point for (u, v) of the unit square: uniformSphere in single precision.
 struct SpherePoint {
     float x, y, z;
-    SpherePoint(double u, double v) {
-        z = 1.0F - 2.0F * static_cast<float>(u);
+    SpherePoint(float u, float v) {
+        z = 1.0F - 2.0F * u;
         const float squared = 1.0F - z * z;
         const float radius = std::sqrt(squared > 0.0F ? squared : 0.0F);
-        const float half = std::numbers::pi_v<float> * (static_cast<float>(v) - 0.5F); // of the angle, less π
+        const float half = std::numbers::pi_v<float> * (v - 0.5F); // of the angle, less π
         const float s = sine(half);
         const float c = cosine(half);
         x = radius * (s * s - c * c);
@@ -58,90 +71,93 @@ struct SpherePoint {
     }
 };
 
-/// Chords between the points (p0, p1) and (p2, p3) of the unit square, mapped to the sphere, of the `count` indices in `order`.
+/// Chords between the points (p0, p1) and (p2, p3) of the unit square, mapped to the sphere. `points`: 4 × count.
 LAMBERT_VECTOR_CLONES
-void chords(const double* const (&p)[4], const std::uint32_t* order, const glm::vec3& centre, float sphereRadius,
-            LinePacket& packet) {
-    const float cx = centre.x;
-    const float cy = centre.y;
-    const float cz = centre.z;
-    for (int lane = 0; lane < kSize; ++lane) {
-        const std::uint32_t i = order[lane];
-        const SpherePoint a(p[0][i], p[1][i]);
-        const SpherePoint b(p[2][i], p[3][i]);
-        packet.originX[lane] = cx + sphereRadius * a.x;
-        packet.originY[lane] = cy + sphereRadius * a.y;
-        packet.originZ[lane] = cz + sphereRadius * a.z;
-        packet.directionX[lane] = sphereRadius * (b.x - a.x);
-        packet.directionY[lane] = sphereRadius * (b.y - a.y);
-        packet.directionZ[lane] = sphereRadius * (b.z - a.z);
+void chords(const float* points, std::uint32_t count, const glm::vec3& centre, float radius, const LineArrays& lines) {
+    const LineArrays l = lines;
+    const glm::vec3 c = centre;
+#pragma GCC ivdep
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const SpherePoint a(points[i], points[i + count]);
+        const SpherePoint b(points[i + 2 * count], points[i + 3 * count]);
+        l.originX[i] = c.x + radius * a.x;
+        l.originY[i] = c.y + radius * a.y;
+        l.originZ[i] = c.z + radius * a.z;
+        l.directionX[i] = radius * (b.x - a.x);
+        l.directionY[i] = radius * (b.y - a.y);
+        l.directionZ[i] = radius * (b.z - a.z);
     }
 }
 
 /// Lines along the frame's z through the points (p0, p1) of the unit square, mapped to the disk as concentricDisk does.
 LAMBERT_VECTOR_CLONES
-void parallels(const double* const (&p)[2], const std::uint32_t* order, const glm::vec3& centre, float radius,
-               const OrthonormalBasis& frame, LinePacket& packet) {
+void parallels(const float* points, std::uint32_t count, const glm::vec3& centre, float radius,
+               const OrthonormalBasis& frame, const LineArrays& lines) {
+    const LineArrays l = lines;
     const glm::vec3 start = centre - radius * frame.z;
     const glm::vec3 axisX = radius * frame.x;
     const glm::vec3 axisY = radius * frame.y;
     const glm::vec3 direction = 2.0F * radius * frame.z;
     constexpr float kQuarter = std::numbers::pi_v<float> / 4.0F;
-    for (int lane = 0; lane < kSize; ++lane) {
-        const std::uint32_t i = order[lane];
-        const float u = 2.0F * static_cast<float>(p[0][i]) - 1.0F;
-        const float v = 2.0F * static_cast<float>(p[1][i]) - 1.0F;
+#pragma GCC ivdep
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float u = 2.0F * points[i] - 1.0F;
+        const float v = 2.0F * points[i + count] - 1.0F;
         const bool wide = std::abs(u) > std::abs(v);
         const float r = wide ? u : v;
         const float other = wide ? v : u;
-        const float angle = kQuarter * (r != 0.0F ? other / r : 0.0F);
+        const float angle = kQuarter * other / (r != 0.0F ? r : 1.0F);
         const float along = r * cosine(angle);
         const float across = r * sine(angle);
         const float x = wide ? along : across;
         const float y = wide ? across : along;
-        packet.originX[lane] = start.x + x * axisX.x + y * axisY.x;
-        packet.originY[lane] = start.y + x * axisX.y + y * axisY.y;
-        packet.originZ[lane] = start.z + x * axisX.z + y * axisY.z;
-        packet.directionX[lane] = direction.x;
-        packet.directionY[lane] = direction.y;
-        packet.directionZ[lane] = direction.z;
+        l.originX[i] = start.x + x * axisX.x + y * axisY.x;
+        l.originY[i] = start.y + x * axisX.y + y * axisY.y;
+        l.originZ[i] = start.z + x * axisX.z + y * axisY.z;
+        l.directionX[i] = direction.x;
+        l.directionY[i] = direction.y;
+        l.directionZ[i] = direction.z;
     }
 }
 
-/// Sorts the points of [0, 1)^dimensions by their cells, about four to a cell, neighbours after neighbours: the bits of the
-/// cell's coordinates in turn (G. M. Morton, IBM 1966). `order` is padded with its last element to whole packets.
-void sortByCell(const std::vector<double>& points, std::uint32_t count, std::uint32_t dimensions,
-                std::vector<std::uint32_t>& cell, std::vector<std::uint32_t>& order) {
-    const std::uint32_t bits = (static_cast<std::uint32_t>(std::bit_width(count)) - 1) / dimensions;
-    const auto side = static_cast<double>(1U << bits);
-    cell.assign(count, 0);
-    // Spread the bits of a coordinate, `dimensions` apart.
+/// Whether the lines come through the box: no axis that is normal to the line and to one of the box parts them.
+LAMBERT_VECTOR_CLONES
+void findMeeting(const LineArrays& lines, std::uint32_t count, const glm::vec3& centre, const glm::vec3& halfSize,
+                 std::uint8_t* meets) {
+    const LineArrays l = lines;
+    const glm::vec3 c = centre;
+    const glm::vec3 h = halfSize;
+#pragma GCC ivdep
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float px = l.originX[i] - c.x;
+        const float py = l.originY[i] - c.y;
+        const float pz = l.originZ[i] - c.z;
+        const float dx = l.directionX[i];
+        const float dy = l.directionY[i];
+        const float dz = l.directionZ[i];
+        const float ax = std::abs(dx);
+        const float ay = std::abs(dy);
+        const float az = std::abs(dz);
+        const bool x = std::abs(dy * pz - dz * py) <= h.y * az + h.z * ay;
+        const bool y = std::abs(dz * px - dx * pz) <= h.z * ax + h.x * az;
+        const bool z = std::abs(dx * py - dy * px) <= h.x * ay + h.y * ax;
+        meets[i] = static_cast<std::uint8_t>(x & y & z);
+    }
+}
+
+/// The bits of k, `apart` apart.
+std::vector<std::uint32_t> spreadBits(std::uint32_t bits, std::uint32_t apart) {
     std::vector<std::uint32_t> spread(std::size_t{1} << bits, 0);
     for (std::uint32_t k = 0; k < spread.size(); ++k)
-        for (std::uint32_t bit = 0; bit < bits; ++bit) spread[k] |= (k >> bit & 1U) << (bit * dimensions);
-    for (std::uint32_t d = 0; d < dimensions; ++d) {
-        const double* coordinate = points.data() + std::size_t{d} * count;
-        for (std::uint32_t i = 0; i < count; ++i)
-            cell[i] |= spread[static_cast<std::size_t>(side * coordinate[i])] << d;
-    }
-    std::vector<std::uint32_t> next((std::size_t{1} << (bits * dimensions)) + 1, 0);
-    for (const std::uint32_t c : cell) ++next[c + 1];
-    for (std::size_t c = 1; c < next.size(); ++c) next[c] += next[c - 1];
-    order.resize((count + kSize - 1) / kSize * kSize);
-    for (std::uint32_t i = 0; i < count; ++i) order[next[cell[i]]++] = i;
-    std::fill(order.begin() + count, order.end(), order[count - 1]);
-}
-
-void setActive(std::uint32_t count, std::vector<LinePacket>& packets) {
-    packets.resize((count + kSize - 1) / kSize);
-    for (LinePacket& packet : packets) std::fill_n(packet.active, kSize, -1);
-    for (std::uint32_t lane = (count - 1) % kSize + 1; lane < kSize; ++lane) packets.back().active[lane] = 0;
+        for (std::uint32_t bit = 0; bit < bits; ++bit) spread[k] |= (k >> bit & 1U) << (bit * apart);
+    return spread;
 }
 
 } // namespace
 
 IsotropicLines::IsotropicLines(const Bounds& bounds, const GlobalLineOptions& options)
     : centre_(0.5F * (bounds.lower + bounds.upper)),
+      halfSize_(0.5F * bounds.size() + 1e-4F * 0.5F * bounds.diagonal()),
       radius_(1.0001F * 0.5F * bounds.diagonal()),
       options_(options),
       points_(linePoints(options)) {}
@@ -156,38 +172,81 @@ std::uint64_t IsotropicLines::linesBefore(std::uint64_t blocks) const {
     return std::min<std::uint64_t>(blocks * linesPerBlock(), options_.lines);
 }
 
-void IsotropicLines::fill(std::uint64_t block, Block& result) const {
+void IsotropicLines::fill(std::uint64_t block, Block& result, Keep keep) const {
     const auto first = static_cast<std::uint32_t>(linesBefore(block));
     const auto count = static_cast<std::uint32_t>(linesBefore(block + 1) - first);
-    setActive(count, result.packets);
+    for (std::vector<float>& coordinates : result.lines) coordinates.resize(count);
     if (options_.set == LineSet::Chords)
-        fillChords(first, count, result);
+        makeChords(first, count, result);
     else
-        fillBundle(static_cast<std::uint32_t>(block), count, result);
+        makeBundle(static_cast<std::uint32_t>(block), count, result);
+
+    result.meets.assign(count, 1);
+    if (keep == Keep::MeetingBounds)
+        findMeeting(LineArrays(result.lines), count, centre_, halfSize_, result.meets.data());
+    result.kept.resize(count);
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) { // without a branch that no one can predict
+        result.kept[kept] = i;
+        kept += result.meets[i];
+    }
+    result.kept.resize(kept);
+    sortByCell(count, result);
+    pack(result);
 }
 
-void IsotropicLines::fillChords(std::uint32_t first, std::uint32_t count, Block& result) const {
+/// Sorts the kept lines by the cells of their points in the unit cube, a few to a cell, neighbours after neighbours: the bits
+/// of the cell's coordinates in turn (G. M. Morton, "A computer oriented geodetic data base", IBM 1966).
+void IsotropicLines::sortByCell(std::uint32_t count, Block& result) {
+    const auto dimensions = static_cast<std::uint32_t>(result.points.size() / count);
+    const std::uint32_t bits = (static_cast<std::uint32_t>(std::bit_width(count)) - 1) / dimensions;
+    const std::vector<std::uint32_t> spread = spreadBits(bits, dimensions);
+    const auto side = static_cast<float>(1U << bits);
+    result.next.assign((std::size_t{1} << (bits * dimensions)) + 1, 0);
+    result.cell.clear();
+    for (const std::uint32_t i : result.kept) {
+        std::uint32_t cell = 0;
+        for (std::uint32_t d = 0; d < dimensions; ++d)
+            cell |= spread[static_cast<std::uint32_t>(side * result.points[i + std::size_t{d} * count])] << d;
+        result.cell.push_back(cell);
+        ++result.next[cell + 1];
+    }
+    for (std::size_t c = 1; c < result.next.size(); ++c) result.next[c] += result.next[c - 1];
+    result.order.resize(result.kept.size());
+    for (std::size_t k = 0; k < result.kept.size(); ++k) result.order[result.next[result.cell[k]]++] = result.kept[k];
+}
+
+void IsotropicLines::pack(Block& result) {
+    const std::size_t count = result.order.size();
+    result.packets.resize((count + kSize - 1) / kSize);
+    for (std::size_t p = 0; p < result.packets.size(); ++p) {
+        LinePacket& packet = result.packets[p];
+        float* const rows[6] = {packet.originX,    packet.originY,    packet.originZ,
+                                packet.directionX, packet.directionY, packet.directionZ};
+        for (std::size_t lane = 0; lane < kSize; ++lane) {
+            const std::size_t k = kSize * p + lane;
+            packet.active[lane] = k < count ? -1 : 0;
+            const std::uint32_t line = result.order[std::min(k, count - 1)]; // past the end the last one again
+            for (std::size_t c = 0; c < 6; ++c) rows[c][lane] = result.lines[c][line];
+        }
+    }
+}
+
+void IsotropicLines::makeChords(std::uint32_t first, std::uint32_t count, Block& result) const {
     result.points.resize(std::size_t{4} * count);
     for (std::uint32_t d = 0; d < 4; ++d)
         points_.fill(first, d, std::span(result.points).subspan(std::size_t{d} * count, count));
-    sortByCell(result.points, count, 4, result.cell, result.order);
-    const double* p = result.points.data();
-    for (std::size_t k = 0; k < result.packets.size(); ++k)
-        chords({p, p + count, p + std::size_t{2} * count, p + std::size_t{3} * count}, result.order.data() + kSize * k,
-               centre_, radius_, result.packets[k]);
+    chords(result.points.data(), count, centre_, radius_, LineArrays(result.lines));
 }
 
-void IsotropicLines::fillBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const {
+void IsotropicLines::makeBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const {
     const auto key = philox({bundle, 0, 0, 0x42554E44}, options_.seed);
     const SamplePoints pattern(options_.sampler, options_.linesPerBundle, 2, (std::uint64_t{key[0]} << 32) | key[1]);
     result.points.resize(std::size_t{2} * count);
     for (std::uint32_t d = 0; d < 2; ++d)
         pattern.fill(0, d, std::span(result.points).subspan(std::size_t{d} * count, count));
-    sortByCell(result.points, count, 2, result.cell, result.order);
     const OrthonormalBasis frame(glm::vec3(uniformSphere({points_.at(bundle, 0), points_.at(bundle, 1)})));
-    const double* p = result.points.data();
-    for (std::size_t k = 0; k < result.packets.size(); ++k)
-        parallels({p, p + count}, result.order.data() + kSize * k, centre_, radius_, frame, result.packets[k]);
+    parallels(result.points.data(), count, centre_, radius_, frame, LineArrays(result.lines));
 }
 
 } // namespace lambert

@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -34,14 +35,22 @@ public:
     /// `bounds` of the scene. Throws UsageError for options out of range.
     IsotropicLines(const Bounds& bounds, const GlobalLineOptions& options);
 
-    /// Scratch memory and result of trace(); one per thread.
+    /// Result of fill(), and its scratch memory; one per thread.
     struct Block {
-        std::vector<LinePacket> packets; //!< all lines of the block; only the last packet may have inactive ones
+        std::vector<LinePacket> packets; //!< only the last may have inactive lines
 
     private:
         friend class IsotropicLines;
-        std::vector<double> points; ///< dimension by dimension
-        std::vector<std::uint32_t> cell, order;
+        std::vector<float> points;               ///< of the unit cube, dimension by dimension
+        std::array<std::vector<float>, 6> lines; ///< origins' and directions' coordinates
+        std::vector<std::uint8_t> meets;         ///< whether the line is to be kept
+        std::vector<std::uint32_t> kept, cell, next, order;
+    };
+
+    /// Which lines of a block are wanted.
+    enum class Keep {
+        MeetingBounds, ///< only those that come near the scene's box, two of three; the others cross nothing
+        All
     };
 
     std::uint64_t blockCount() const;
@@ -49,18 +58,21 @@ public:
     std::uint32_t linesPerBlock() const;
     /// Lines of the first `blocks` blocks.
     std::uint64_t linesBefore(std::uint64_t blocks) const;
-    /// The lines of a block, the same for the same options.
-    void fill(std::uint64_t block, Block& result) const;
+    /// Lines of a block, the same for the same options; neighbours follow each other.
+    void fill(std::uint64_t block, Block& result, Keep keep = Keep::MeetingBounds) const;
 
     const glm::vec3& centre() const { return centre_; }
     /// Of the bounding sphere (metres), 1e-4 larger than needed: a patch of area A is crossed with probability A / (2πR²).
     float radius() const { return radius_; }
 
 private:
-    void fillChords(std::uint32_t first, std::uint32_t count, Block& result) const;
-    void fillBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const;
+    static void sortByCell(std::uint32_t count, Block& result);
+    static void pack(Block& result);
+    void makeChords(std::uint32_t first, std::uint32_t count, Block& result) const;
+    void makeBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const;
 
     glm::vec3 centre_;
+    glm::vec3 halfSize_; ///< of the scene's box, a little enlarged
     float radius_;
     GlobalLineOptions options_;
     SamplePoints points_; ///< of chords: both ends; of bundles: their directions
