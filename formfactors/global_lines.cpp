@@ -24,6 +24,12 @@ struct GlobalLines::Scratch {
     IsotropicLines::Block block;
     LineCrossings crossings;
     SpanLog log;
+    /// Crossings of the packet's lines, one line after the other, for the lookup.
+    struct Hits {
+        alignas(64) std::uint32_t polygon[16], patch[16];
+        alignas(64) float u[16], v[16];
+    };
+    std::vector<Hits> hits;
 };
 
 GlobalLines::GlobalLines(const PatchMesh& mesh, const LineCaster& caster, const GlobalLineOptions& options)
@@ -33,22 +39,44 @@ GlobalLines::GlobalLines(const PatchMesh& mesh, const LineCaster& caster, const 
     if (std::find(occluder_.begin(), occluder_.end(), true) == occluder_.end()) occluder_.clear();
 }
 
+void GlobalLines::findPatches(Scratch& scratch) const {
+    auto next = scratch.hits.begin();
+    std::size_t lane = 0;
+    const auto put = [&](std::uint32_t polygon, float u, float v) {
+        if (lane == 16) {
+            ++next;
+            lane = 0;
+        }
+        if (next == scratch.hits.end()) next = scratch.hits.emplace(next);
+        next->polygon[lane] = polygon;
+        next->u[lane] = u;
+        next->v[lane] = v;
+        ++lane;
+    };
+    for (int line = 0; line < LinePacket::kSize; ++line)
+        for (const Crossing& crossing : scratch.crossings[line]) put(crossing.polygon, crossing.u, crossing.v);
+    if (lane == 0) return;
+    while (lane < 16) put(kNone, 0.0F, 0.0F);
+    for (auto hits = scratch.hits.begin(); hits <= next; ++hits)
+        mesh_.lookup.patchesAt(hits->polygon, hits->u, hits->v, hits->patch);
+}
+
 void GlobalLines::traceBlock(std::uint64_t block, Scratch& scratch) const {
     lines_.fill(block, scratch.block);
     SpanLog& log = scratch.log;
     for (const LinePacket& packet : scratch.block.packets) {
         caster_.cross(packet, scratch.crossings);
-        for (int lane = 0; lane < LinePacket::kSize; ++lane) {
+        findPatches(scratch);
+        std::size_t crossed = 0;
+        for (int line = 0; line < LinePacket::kSize; ++line) {
             std::uint32_t left = log.out(); // what the line left last
-            for (const Crossing& crossing : scratch.crossings[lane]) {
-                std::uint32_t front = log.back();
-                std::uint32_t back = log.back();
-                if (occluder_.empty() || !occluder_[crossing.polygon]) {
-                    front = mesh_.lookup.patchAt(crossing.polygon, crossing.u, crossing.v);
-                    back = std::min(mesh_.lookup.backPatch(crossing.polygon, front), log.back()); // kNone: black
-                }
+            for (const Crossing& crossing : scratch.crossings[line]) {
+                std::uint32_t front = scratch.hits[crossed / 16].patch[crossed % 16];
+                std::uint32_t back = std::min(mesh_.lookup.backPatch(crossing.polygon, front), log.back());
+                if (!occluder_.empty() && occluder_[crossing.polygon]) front = back = log.back();
                 log.add(left, crossing.front ? front : back);
                 left = crossing.front ? back : front;
+                ++crossed;
             }
             log.add(left, log.out());
         }

@@ -33,6 +33,7 @@ public:
 
 private:
     struct Scratch;
+    void findPatches(Scratch& scratch) const;
     void traceBlock(std::uint64_t block, Scratch& scratch) const;
 
     const PatchMesh& mesh_;

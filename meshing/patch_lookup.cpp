@@ -214,10 +214,7 @@ std::uint32_t PatchLookup::search(const Locator& locator, std::uint32_t firstCan
 std::uint32_t PatchLookup::locate(const Entry& entry, float u, float v) const {
     const Locator& locator = locators_[entry.locator];
     const glm::vec2 point = cellPoint(locator, u, v);
-    const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
-    const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
-    const std::uint32_t code = cells_[locator.firstCell + std::size_t{row} * locator.columns + column];
-    return entry.first + decode(locator, code, point);
+    return entry.first + decode(locator, cells_[cellAt(locator, point)], point);
 }
 
 LAMBERT_VECTOR_CLONES
@@ -280,8 +277,50 @@ void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)
             gridPatches(entry, u, v, patch);
         return;
     }
-    for (int lane = 0; lane < 16; ++lane)
-        if (polygon[lane] != kNone) patch[lane] = patchAt(polygon[lane], u[lane], v[lane]);
+    mixedPatches(polygon, u, v, patch);
+}
+
+/// In steps, each for all hits, so that the memory is asked for all cells and then for all edges at once.
+void PatchLookup::mixedPatches(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
+                               std::uint32_t (&patch)[16]) const {
+    struct Hit {
+        const Entry* entry;
+        int lane;
+        float x, y;
+        std::uint32_t cell, code;
+    };
+    std::array<Hit, 16> hits;
+    int count = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+        if (polygon[lane] == kNone) continue;
+        const Entry& entry = entries_[polygon[lane]];
+        if (entry.locator == kNone) {
+            const GridPoint p = gridPoint(u[lane], v[lane], entry.skew);
+            patch[lane] = entry.first + gridIndex(p.t, entry.rows) * entry.columns + gridIndex(p.s, entry.columns);
+            continue;
+        }
+        const Locator& locator = locators_[entry.locator];
+        const glm::vec2 point = cellPoint(locator, u[lane], v[lane]);
+        hits[static_cast<std::size_t>(count++)] = {&entry, lane, point.x, point.y, cellAt(locator, point), 0};
+    }
+    for (int k = 0; k < count; ++k) {
+        Hit& hit = hits[static_cast<std::size_t>(k)];
+        hit.code = cells_[hit.cell];
+    }
+    for (int k = 0; k < count; ++k) {
+        const Hit& hit = hits[static_cast<std::size_t>(k)];
+        const bool isSplit = hit.code - kSplit < kSearch - kSplit;
+        const Split& split = splits_[isSplit ? hit.code - kSplit : 0];
+        const float side = split.normal.x * hit.x + split.normal.y * hit.y;
+        const std::uint32_t chosen = side >= split.offset ? split.inside : split.outside;
+        patch[hit.lane] = hit.entry->first + (isSplit ? chosen : hit.code);
+    }
+    for (int k = 0; k < count; ++k) {
+        const Hit& hit = hits[static_cast<std::size_t>(k)];
+        if (hit.code >= kSearch)
+            patch[hit.lane] =
+                hit.entry->first + search(locators_[hit.entry->locator], hit.code - kSearch, {hit.x, hit.y});
+    }
 }
 
 } // namespace lambert

@@ -91,6 +91,13 @@ private:
     };
 
     std::uint32_t locate(const Entry& entry, float u, float v) const;
+    void mixedPatches(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
+                      std::uint32_t (&patch)[16]) const;
+    static std::uint32_t cellAt(const Locator& locator, glm::vec2 point) {
+        const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
+        const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
+        return locator.firstCell + row * locator.columns + column;
+    }
     static glm::vec2 cellPoint(const Locator& locator, float u, float v) {
         const std::size_t half = u + v <= 1.0F ? 0 : 1;
         return locator.origin[half] + u * locator.axisU[half] + v * locator.axisV[half];
