@@ -4,6 +4,7 @@
 #include "core/orthonormal_basis.h"
 #include "core/random.h"
 #include "core/vector_clones.h"
+#include "core/vector_warps.h"
 #include "core/warps.h"
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 namespace lambert {
 
@@ -30,19 +30,6 @@ SamplePoints linePoints(const GlobalLineOptions& options) {
     return {options.sampler, (options.lines - 1) / options.linesPerBundle + 1, 2, options.seed};
 }
 
-/// sin and cos of |x| <= π/2 to float precision, in code that vectorises.
-inline float sine(float x) {
-    const float y = x * x;
-    return x * (1.0F +
-                y * (-1.0F / 6 + y * (1.0F / 120 + y * (-1.0F / 5040 + y * (1.0F / 362880 - y * (1.0F / 39916800))))));
-}
-inline float cosine(float x) {
-    const float y = x * x;
-    return 1.0F +
-           y * (-0.5F + y * (1.0F / 24 +
-                             y * (-1.0F / 720 + y * (1.0F / 40320 + y * (-1.0F / 3628800 + y * (1.0F / 479001600))))));
-}
-
 /// Coordinates of lines, as vector code sees them.
 struct LineArrays {
     float *originX, *originY, *originZ, *directionX, *directionY, *directionZ;
@@ -54,21 +41,6 @@ struct LineArrays {
           directionX(lines[3].data()),
           directionY(lines[4].data()),
           directionZ(lines[5].data()) {}
-};
-
-/// A sphere's point for (u, v) of the unit square: uniformSphere in single precision.
-struct SpherePoint {
-    float x, y, z;
-    SpherePoint(float u, float v) {
-        z = 1.0F - 2.0F * u;
-        const float squared = 1.0F - z * z;
-        const float radius = std::sqrt(squared > 0.0F ? squared : 0.0F);
-        const float half = std::numbers::pi_v<float> * (v - 0.5F); // of the angle, less π
-        const float s = sine(half);
-        const float c = cosine(half);
-        x = radius * (s * s - c * c);
-        y = radius * (-2.0F * s * c);
-    }
 };
 
 /// Chords between the points (p0, p1) and (p2, p3) of the unit square, mapped to the sphere. `points`: 4 × count.
@@ -98,22 +70,12 @@ void parallels(const float* points, std::uint32_t count, const glm::vec3& centre
     const glm::vec3 axisX = radius * frame.x;
     const glm::vec3 axisY = radius * frame.y;
     const glm::vec3 direction = 2.0F * radius * frame.z;
-    constexpr float kQuarter = std::numbers::pi_v<float> / 4.0F;
 #pragma GCC ivdep
     for (std::uint32_t i = 0; i < count; ++i) {
-        const float u = 2.0F * points[i] - 1.0F;
-        const float v = 2.0F * points[i + count] - 1.0F;
-        const bool wide = std::abs(u) > std::abs(v);
-        const float r = wide ? u : v;
-        const float other = wide ? v : u;
-        const float angle = kQuarter * other / (r != 0.0F ? r : 1.0F);
-        const float along = r * cosine(angle);
-        const float across = r * sine(angle);
-        const float x = wide ? along : across;
-        const float y = wide ? across : along;
-        l.originX[i] = start.x + x * axisX.x + y * axisY.x;
-        l.originY[i] = start.y + x * axisX.y + y * axisY.y;
-        l.originZ[i] = start.z + x * axisX.z + y * axisY.z;
+        const DiskPoint p(points[i], points[i + count]);
+        l.originX[i] = start.x + p.x * axisX.x + p.y * axisY.x;
+        l.originY[i] = start.y + p.x * axisX.y + p.y * axisY.y;
+        l.originZ[i] = start.z + p.x * axisX.z + p.y * axisY.z;
         l.directionX[i] = direction.x;
         l.directionY[i] = direction.y;
         l.directionZ[i] = direction.z;
@@ -143,14 +105,6 @@ void findMeeting(const LineArrays& lines, std::uint32_t count, const glm::vec3& 
         const bool z = std::abs(dx * py - dy * px) <= h.x * ay + h.y * ax;
         meets[i] = static_cast<std::uint8_t>(x & y & z);
     }
-}
-
-/// The bits of k, `apart` apart.
-std::vector<std::uint32_t> spreadBits(std::uint32_t bits, std::uint32_t apart) {
-    std::vector<std::uint32_t> spread(std::size_t{1} << bits, 0);
-    for (std::uint32_t k = 0; k < spread.size(); ++k)
-        for (std::uint32_t bit = 0; bit < bits; ++bit) spread[k] |= (k >> bit & 1U) << (bit * apart);
-    return spread;
 }
 
 } // namespace
@@ -191,33 +145,13 @@ void IsotropicLines::fill(std::uint64_t block, Block& result, Keep keep) const {
         kept += result.meets[i];
     }
     result.kept.resize(kept);
-    sortByCell(count, result);
-    pack(result);
-}
-
-/// Sorts the kept lines by the cells of their points in the unit cube, a few to a cell, neighbours after neighbours: the bits
-/// of the cell's coordinates in turn (G. M. Morton, "A computer oriented geodetic data base", IBM 1966).
-void IsotropicLines::sortByCell(std::uint32_t count, Block& result) {
     const auto dimensions = static_cast<std::uint32_t>(result.points.size() / count);
-    const std::uint32_t bits = (static_cast<std::uint32_t>(std::bit_width(count)) - 1) / dimensions;
-    const std::vector<std::uint32_t> spread = spreadBits(bits, dimensions);
-    const auto side = static_cast<float>(1U << bits);
-    result.next.assign((std::size_t{1} << (bits * dimensions)) + 1, 0);
-    result.cell.clear();
-    for (const std::uint32_t i : result.kept) {
-        std::uint32_t cell = 0;
-        for (std::uint32_t d = 0; d < dimensions; ++d)
-            cell |= spread[static_cast<std::uint32_t>(side * result.points[i + std::size_t{d} * count])] << d;
-        result.cell.push_back(cell);
-        ++result.next[cell + 1];
-    }
-    for (std::size_t c = 1; c < result.next.size(); ++c) result.next[c] += result.next[c - 1];
-    result.order.resize(result.kept.size());
-    for (std::size_t k = 0; k < result.kept.size(); ++k) result.order[result.next[result.cell[k]]++] = result.kept[k];
+    const int bits = (std::bit_width(count) - 1) / static_cast<int>(dimensions);
+    pack(result, result.sorter.order(result.points, count, dimensions, bits, result.kept));
 }
 
-void IsotropicLines::pack(Block& result) {
-    const std::size_t count = result.order.size();
+void IsotropicLines::pack(Block& result, std::span<const std::uint32_t> order) {
+    const std::size_t count = order.size();
     result.packets.resize((count + kSize - 1) / kSize);
     for (std::size_t p = 0; p < result.packets.size(); ++p) {
         LinePacket& packet = result.packets[p];
@@ -226,7 +160,7 @@ void IsotropicLines::pack(Block& result) {
         for (std::size_t lane = 0; lane < kSize; ++lane) {
             const std::size_t k = kSize * p + lane;
             packet.active[lane] = k < count ? -1 : 0;
-            const std::uint32_t line = result.order[std::min(k, count - 1)]; // past the end the last one again
+            const std::uint32_t line = order[std::min(k, count - 1)]; // past the end the last one again
             for (std::size_t c = 0; c < 6; ++c) rows[c][lane] = result.lines[c][line];
         }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/sample_points.h"
+#include "formfactors/cell_sorter.h"
 #include "scene/line_caster.h"
 
 #include <glm/vec3.hpp>
@@ -44,7 +45,8 @@ public:
         std::vector<float> points;               ///< of the unit cube, dimension by dimension
         std::array<std::vector<float>, 6> lines; ///< origins' and directions' coordinates
         std::vector<std::uint8_t> meets;         ///< whether the line is to be kept
-        std::vector<std::uint32_t> kept, cell, next, order;
+        std::vector<std::uint32_t> kept;
+        CellSorter sorter;
     };
 
     /// Which lines of a block are wanted.
@@ -66,8 +68,7 @@ public:
     float radius() const { return radius_; }
 
 private:
-    static void sortByCell(std::uint32_t count, Block& result);
-    static void pack(Block& result);
+    static void pack(Block& result, std::span<const std::uint32_t> order);
     void makeChords(std::uint32_t first, std::uint32_t count, Block& result) const;
     void makeBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const;
 

@@ -3,7 +3,8 @@
 #include "core/error.h"
 #include "core/orthonormal_basis.h"
 #include "core/random.h"
-#include "core/warps.h"
+#include "core/vector_clones.h"
+#include "core/vector_warps.h"
 #include "formfactors/hit_sum.h"
 #include "formfactors/patch_sampling.h"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace lambert {
 
@@ -19,26 +21,34 @@ namespace {
 
 constexpr std::uint32_t kMostLines = 1U << 24;
 
-/// The bits of both numbers in turn: cells in this order are neighbours more often than row by row.
-/// G. M. Morton, "A computer oriented geodetic data base", IBM 1966.
-std::uint32_t mortonCode(std::uint32_t x, std::uint32_t y) {
-    const auto spread = [](std::uint32_t v) {
-        v = (v | v << 8) & 0x00FF00FFU;
-        v = (v | v << 4) & 0x0F0F0F0FU;
-        v = (v | v << 2) & 0x33333333U;
-        return (v | v << 1) & 0x55555555U;
-    };
-    return spread(x) | spread(y) << 1;
-}
+/// Coordinates of the lines of a patch, #lines each.
+struct LineArrays {
+    float *originX, *originY, *originZ, *directionX, *directionY, *directionZ;
 
-/// The order that sorts by cell, first come first.
-std::vector<std::uint32_t> orderByCell(const std::vector<std::uint32_t>& cell, std::size_t cells) {
-    std::vector<std::uint32_t> next(cells + 1, 0);
-    for (const std::uint32_t c : cell) ++next[c + 1];
-    for (std::size_t c = 0; c < cells; ++c) next[c + 1] += next[c];
-    std::vector<std::uint32_t> order(cell.size());
-    for (std::uint32_t i = 0; i < cell.size(); ++i) order[next[cell[i]]++] = i;
-    return order;
+    LineArrays(std::vector<float>& memory, std::size_t count) {
+        memory.resize(6 * count);
+        float* next = memory.data();
+        for (float** array : {&originX, &originY, &originZ, &directionX, &directionY, &directionZ}) {
+            *array = next;
+            next += count;
+        }
+    }
+};
+
+/// Cosine-distributed directions about the frame's z from the first two coordinates of `points` (dimension by dimension).
+LAMBERT_VECTOR_CLONES
+void makeDirections(const float* points, std::uint32_t count, const OrthonormalBasis& frame, const LineArrays& lines) {
+    const LineArrays l = lines;
+    const OrthonormalBasis f = frame;
+#pragma GCC ivdep
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const DiskPoint p(points[i], points[i + count]);
+        const float squared = 1.0F - p.squaredRadius;
+        const float z = std::sqrt(squared > 0.0F ? squared : 0.0F);
+        l.directionX[i] = p.x * f.x.x + p.y * f.y.x + z * f.z.x;
+        l.directionY[i] = p.x * f.x.y + p.y * f.y.y + z * f.z.y;
+        l.directionZ[i] = p.x * f.x.z + p.y * f.y.z + z * f.z.z;
+    }
 }
 
 } // namespace
@@ -51,45 +61,54 @@ LocalLines::LocalLines(const PatchMesh& mesh, const RayCaster& rays, const Local
     cellBits_ = std::min((static_cast<int>(std::bit_width(options.lines / 4)) + 1) / 2, 8);
 }
 
-std::vector<Ray> LocalLines::lines(std::uint32_t patch) const {
+void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
+    const std::uint32_t count = options_.lines;
     const auto key = philox({patch, 0, 0, 0x4C494E45}, options_.seed);
-    const SamplePoints points(options_.sampler, options_.lines, 4, (std::uint64_t{key[0]} << 32) | key[1]);
-    const auto side = static_cast<double>(1U << cellBits_);
-    std::vector<std::uint32_t> cell(options_.lines);
-    for (std::uint32_t i = 0; i < options_.lines; ++i)
-        cell[i] = mortonCode(static_cast<std::uint32_t>(side * points.at(i, 0)),
-                             static_cast<std::uint32_t>(side * points.at(i, 1)));
-
-    const OrthonormalBasis basis(mesh_.normal[patch]);
-    const PatchPoints starts(mesh_, patch);
+    const SamplePoints points(options_.sampler, count, 4, (std::uint64_t{key[0]} << 32) | key[1]);
+    lines.points.resize(std::size_t{4} * count);
+    for (std::uint32_t d = 0; d < 4; ++d)
+        points.fill(0, d, std::span(lines.points).subspan(std::size_t{d} * count, count));
+    const LineArrays arrays(lines.coordinates, count);
     const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[patch])) * mesh_.normal[patch];
+    makeDirections(lines.points.data(), count, OrthonormalBasis(mesh_.normal[patch]), arrays);
+    PatchPoints(mesh_, patch)
+        .fill(lines.points.data() + std::size_t{2} * count, count, offset, arrays.originX, arrays.originY,
+              arrays.originZ);
+    lines.all.resize(count);
+    std::iota(lines.all.begin(), lines.all.end(), 0U);
+    lines.order = lines.sorter.order(lines.points, count, 2, cellBits_, lines.all);
+}
+
+std::vector<Ray> LocalLines::lines(std::uint32_t patch) const {
+    Lines lines;
+    makeLines(patch, lines);
+    const LineArrays l(lines.coordinates, options_.lines);
     std::vector<Ray> result;
-    result.reserve(options_.lines);
-    for (const std::uint32_t i : orderByCell(cell, std::size_t{1} << (2 * cellBits_))) {
-        const glm::vec3 d(cosineHemisphere({points.at(i, 0), points.at(i, 1)}));
+    for (const std::uint32_t i : lines.order)
         result.push_back(
-            {starts.at({points.at(i, 2), points.at(i, 3)}) + offset, d.x * basis.x + d.y * basis.y + d.z * basis.z});
-    }
+            {{l.originX[i], l.originY[i], l.originZ[i]}, {l.directionX[i], l.directionY[i], l.directionZ[i]}});
     return result;
 }
 
 void LocalLines::row(std::uint32_t patch, RowAccumulator& accumulator) const {
-    const std::vector<Ray> rays = lines(patch);
-    const double weight = 1.0 / static_cast<double>(rays.size());
+    thread_local Lines lines; // keeps its memory from row to row
+    makeLines(patch, lines);
+    const LineArrays l(lines.coordinates, options_.lines);
+    const double weight = 1.0 / static_cast<double>(options_.lines);
     RayPacket packet;
     RayOrigins origins;
     HitSum sum(mesh_.lookup, accumulator);
-    for (std::size_t first = 0; first < rays.size(); first += RayPacket::kSize) {
-        const int count = static_cast<int>(std::min<std::size_t>(RayPacket::kSize, rays.size() - first));
+    for (std::size_t first = 0; first < lines.order.size(); first += RayPacket::kSize) {
+        const int count = static_cast<int>(std::min<std::size_t>(RayPacket::kSize, lines.order.size() - first));
         for (int lane = 0; lane < RayPacket::kSize; ++lane) {
             // Lanes past the end repeat the last line, inactive.
-            const Ray& ray = rays[first + static_cast<std::size_t>(std::min(lane, count - 1))];
-            origins.x[lane] = ray.origin.x;
-            origins.y[lane] = ray.origin.y;
-            origins.z[lane] = ray.origin.z;
-            packet.directionX[lane] = ray.direction.x;
-            packet.directionY[lane] = ray.direction.y;
-            packet.directionZ[lane] = ray.direction.z;
+            const std::uint32_t i = lines.order[first + static_cast<std::size_t>(std::min(lane, count - 1))];
+            origins.x[lane] = l.originX[i];
+            origins.y[lane] = l.originY[i];
+            origins.z[lane] = l.originZ[i];
+            packet.directionX[lane] = l.directionX[i];
+            packet.directionY[lane] = l.directionY[i];
+            packet.directionZ[lane] = l.directionZ[i];
             packet.active[lane] = lane < count ? -1 : 0;
         }
         rays_.closest(origins, packet);

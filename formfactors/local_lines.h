@@ -1,10 +1,12 @@
 #pragma once
 
 #include "core/sample_points.h"
+#include "formfactors/cell_sorter.h"
 #include "formfactors/form_factor_method.h"
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
 
+#include <span>
 #include <vector>
 
 namespace lambert {
@@ -33,6 +35,15 @@ public:
     std::vector<Ray> lines(std::uint32_t patch) const;
 
 private:
+    struct Lines {
+        std::vector<float> points;      ///< of the unit cube, dimension by dimension
+        std::vector<float> coordinates; ///< of origins and directions, axis by axis
+        std::vector<std::uint32_t> all; ///< all indices
+        CellSorter sorter;
+        std::span<const std::uint32_t> order; ///< in which to trace them
+    };
+    void makeLines(std::uint32_t patch, Lines& lines) const;
+
     const PatchMesh& mesh_;
     const RayCaster& rays_;
     LocalLinesOptions options_;
