@@ -17,7 +17,7 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kChordsPerBlock = 1U << 13;
+constexpr std::uint32_t kChordsPerBlock = 1U << 12;
 constexpr std::uint32_t kMostPerBundle = 1U << 20;
 constexpr std::size_t kSize = LinePacket::kSize;
 

@@ -301,11 +301,16 @@ void PatchLookup::mixedPatches(const std::uint32_t (&polygon)[16], const float (
         }
         const Locator& locator = locators_[entry.locator];
         const glm::vec2 point = cellPoint(locator, u[lane], v[lane]);
-        hits[static_cast<std::size_t>(count++)] = {&entry, lane, point.x, point.y, cellAt(locator, point), 0};
+        const std::uint32_t cell = cellAt(locator, point);
+        __builtin_prefetch(&cells_[cell]);
+        hits[static_cast<std::size_t>(count++)] = {&entry, lane, point.x, point.y, cell, 0};
     }
     for (int k = 0; k < count; ++k) {
         Hit& hit = hits[static_cast<std::size_t>(k)];
         hit.code = cells_[hit.cell];
+        __builtin_prefetch(hit.code < kSplit    ? nullptr
+                           : hit.code < kSearch ? static_cast<const void*>(&splits_[hit.code - kSplit])
+                                                : &candidates_[hit.code - kSearch]);
     }
     for (int k = 0; k < count; ++k) {
         const Hit& hit = hits[static_cast<std::size_t>(k)];

@@ -2,6 +2,7 @@
 
 #include "core/vector_clones.h"
 #include "scene/embree_scene.h"
+#include "scene/surface.h"
 
 #include <glm/geometric.hpp>
 
@@ -21,7 +22,8 @@ struct Query {
 };
 
 /// Embree's filter: notes every hit and rejects it, so that the traversal goes on to the line's end.
-template <bool WithHoles>
+enum class PolygonNumbers { Embrees, Listed, ListedWithHoles };
+template <PolygonNumbers Numbers>
 void noteCrossing(const RTCFilterFunctionNArguments* arguments) {
     auto& query = *reinterpret_cast<Query*>(arguments->context);
     RTCHitN* hit = arguments->hit;
@@ -30,11 +32,12 @@ void noteCrossing(const RTCFilterFunctionNArguments* arguments) {
     for (unsigned lane = 0; lane < n; ++lane) {
         if (arguments->valid[lane] == 0) continue;
         arguments->valid[lane] = 0;
-        if constexpr (WithHoles) {
+        if constexpr (Numbers == PolygonNumbers::ListedWithHoles) {
             if (liesInHole(*arguments, lane)) continue;
         }
-        const auto& set = *static_cast<const PolygonSet*>(arguments->geometryUserPtr);
-        const std::uint32_t polygon = set.polygons[RTCHitN_primID(hit, n, lane)];
+        std::uint32_t polygon = RTCHitN_primID(hit, n, lane);
+        if constexpr (Numbers != PolygonNumbers::Embrees)
+            polygon = static_cast<const PolygonSet*>(arguments->geometryUserPtr)->polygons[polygon];
         const float facing = RTCHitN_Ng_x(hit, n, lane) * RTCRayN_dir_x(ray, n, lane) +
                              RTCHitN_Ng_y(hit, n, lane) * RTCRayN_dir_y(ray, n, lane) +
                              RTCHitN_Ng_z(hit, n, lane) * RTCRayN_dir_z(ray, n, lane);
@@ -145,12 +148,9 @@ std::vector<Crossing>::iterator settle(const Scene& scene, const ExactLine& line
     return first;
 }
 
-/// Puts the crossings of a line into order and drops what counts twice; `tolerance` in lengths of the direction.
-void sortCrossings(const Scene& scene, const LinePacket& packet, int lane, float tolerance,
-                   std::vector<Crossing>& crossings) {
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-        return a.distance != b.distance ? a.distance < b.distance : a.polygon < b.polygon;
-    });
+/// Settles all runs of crossings that are closer than `tolerance`, in lengths of the direction.
+void settleAll(const Scene& scene, const LinePacket& packet, int lane, float tolerance,
+               std::vector<Crossing>& crossings) {
     auto end = crossings.begin();
     for (auto first = crossings.begin(); first != crossings.end();) {
         auto last = first + 1;
@@ -164,6 +164,23 @@ void sortCrossings(const Scene& scene, const LinePacket& packet, int lane, float
     crossings.erase(end, crossings.end());
 }
 
+/// Puts the crossings of a line into order and drops what counts twice; there are at least two. `tolerance` in lengths of the
+/// direction.
+void sortCrossings(const Scene& scene, const LinePacket& packet, int lane, float tolerance,
+                   std::vector<Crossing>& crossings) {
+    const auto nearer = [](const Crossing& a, const Crossing& b) {
+        return a.distance != b.distance ? a.distance < b.distance : a.polygon < b.polygon;
+    };
+    if (crossings.size() > 2)
+        std::sort(crossings.begin(), crossings.end(), nearer);
+    else if (nearer(crossings[1], crossings[0]))
+        std::swap(crossings[0], crossings[1]);
+    bool anyClose = false;
+    for (std::size_t k = 1; k < crossings.size(); ++k)
+        anyClose |= crossings[k].distance - crossings[k - 1].distance <= tolerance;
+    if (anyClose) settleAll(scene, packet, lane, tolerance, crossings);
+}
+
 } // namespace
 
 struct LineCaster::Impl {
@@ -171,7 +188,15 @@ struct LineCaster::Impl {
         : scene(source),
           bounds(boundsOf(source)),
           tolerance(coordinateTolerance(bounds)),
-          embree(source, {.opaque = noteCrossing<false>, .withHoles = noteCrossing<true>}) {}
+          embree(source, filters(source)) {}
+
+    /// Without holes Embree numbers the polygons as the scene does.
+    static EmbreeScene::Filters filters(const Scene& source) {
+        const bool holes = std::any_of(source.polygons.begin(), source.polygons.end(),
+                                       [&](const Polygon& polygon) { return hasHoles(source, polygon); });
+        return {.opaque = holes ? noteCrossing<PolygonNumbers::Listed> : noteCrossing<PolygonNumbers::Embrees>,
+                .withHoles = noteCrossing<PolygonNumbers::ListedWithHoles>};
+    }
 
     const Scene& scene;
     Bounds bounds;

@@ -42,7 +42,7 @@ private:
 /// Closed surfaces whose polygons share their vertices are entered and left by turns. Crossings that lie closer together than
 /// coordinates can tell (1e-6 of the largest one) are ordered by their planes in double precision. Where these coincide too,
 /// as of two boxes that touch, fronts are met before backs are; of several polygons met there from the same side the first
-/// one counts. What is left to rounding is a line within a few float steps of an edge: one in a hundred of these, or some 1e-8
+/// one counts. What is left to rounding is a line within a few float steps of an edge: one in fifty of these, or some 1e-8
 /// of all lines, enters a surface that it does not leave.
 class LineCaster {
 public:
