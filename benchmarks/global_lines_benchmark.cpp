@@ -12,7 +12,7 @@
 namespace lambert {
 namespace {
 
-constexpr std::uint32_t kLines = 1U << 18;
+constexpr std::uint32_t kLines = 1U << 20;
 
 struct HitList {
     RTCIntersectContext context;

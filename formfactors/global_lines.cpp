@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace lambert {
 
@@ -13,7 +14,7 @@ namespace {
 
 /// A batch is counted at its end, which rewrites all rows: batches grow with what is counted already, so that this stays a
 /// small part of the work, but the log of their spans stays below 256 MB.
-constexpr std::uint64_t kSmallestBatch = std::uint64_t{1} << 18; ///< lines
+constexpr std::uint64_t kSmallestBatch = std::uint64_t{1} << 20; ///< lines
 constexpr std::uint64_t kSpansPerBatch = std::uint64_t{1} << 26;
 
 } // namespace
@@ -24,7 +25,7 @@ struct GlobalLines::Scratch {
     IsotropicLines::Block block;
     LineCrossings crossings;
     SpanLog log;
-    /// Crossings of the packet's lines, one line after the other, for the lookup.
+    /// The k-th crossings of the packet's lines, for the lookup.
     struct Hits {
         alignas(64) std::uint32_t polygon[16], patch[16];
         alignas(64) float u[16], v[16];
@@ -39,26 +40,31 @@ GlobalLines::GlobalLines(const PatchMesh& mesh, const LineCaster& caster, const 
     if (std::find(occluder_.begin(), occluder_.end(), true) == occluder_.end()) occluder_.clear();
 }
 
+/// The k-th crossings of all lines together: neighbouring lines mostly cross the same polygon, for which the lookup is fastest.
 void GlobalLines::findPatches(Scratch& scratch) const {
-    auto next = scratch.hits.begin();
-    std::size_t lane = 0;
-    const auto put = [&](std::uint32_t polygon, float u, float v) {
-        if (lane == 16) {
-            ++next;
-            lane = 0;
+    for (std::size_t k = 0;; ++k) {
+        std::array<int, LinePacket::kSize> lanes{}; // that have a k-th crossing
+        std::size_t count = 0;
+        for (int lane = 0; lane < LinePacket::kSize; ++lane) {
+            lanes[count] = lane;
+            count += scratch.crossings[lane].size() > k ? 1 : 0;
         }
-        if (next == scratch.hits.end()) next = scratch.hits.emplace(next);
-        next->polygon[lane] = polygon;
-        next->u[lane] = u;
-        next->v[lane] = v;
-        ++lane;
-    };
-    for (int line = 0; line < LinePacket::kSize; ++line)
-        for (const Crossing& crossing : scratch.crossings[line]) put(crossing.polygon, crossing.u, crossing.v);
-    if (lane == 0) return;
-    while (lane < 16) put(kNone, 0.0F, 0.0F);
-    for (auto hits = scratch.hits.begin(); hits <= next; ++hits)
-        mesh_.lookup.patchesAt(hits->polygon, hits->u, hits->v, hits->patch);
+        if (count == 0) return;
+        if (scratch.hits.size() == k) scratch.hits.emplace_back();
+        Scratch::Hits& hits = scratch.hits[k];
+        // Where few are missing, others stand for them, so that the polygons may still be all the same.
+        const Crossing& other = scratch.crossings[lanes[0]][k];
+        std::fill_n(hits.polygon, 16, count >= 8 ? other.polygon : kNone);
+        std::fill_n(hits.u, 16, other.u);
+        std::fill_n(hits.v, 16, other.v);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Crossing& crossing = scratch.crossings[lanes[i]][k];
+            hits.polygon[lanes[i]] = crossing.polygon;
+            hits.u[lanes[i]] = crossing.u;
+            hits.v[lanes[i]] = crossing.v;
+        }
+        mesh_.lookup.patchesAt(hits.polygon, hits.u, hits.v, hits.patch);
+    }
 }
 
 void GlobalLines::traceBlock(std::uint64_t block, Scratch& scratch) const {
@@ -67,16 +73,16 @@ void GlobalLines::traceBlock(std::uint64_t block, Scratch& scratch) const {
     for (const LinePacket& packet : scratch.block.packets) {
         caster_.cross(packet, scratch.crossings);
         findPatches(scratch);
-        std::size_t crossed = 0;
         for (int line = 0; line < LinePacket::kSize; ++line) {
             std::uint32_t left = log.out(); // what the line left last
-            for (const Crossing& crossing : scratch.crossings[line]) {
-                std::uint32_t front = scratch.hits[crossed / 16].patch[crossed % 16];
+            const std::span<const Crossing> crossings = scratch.crossings[line];
+            for (std::size_t k = 0; k < crossings.size(); ++k) {
+                const Crossing& crossing = crossings[k];
+                std::uint32_t front = scratch.hits[k].patch[line];
                 std::uint32_t back = std::min(mesh_.lookup.backPatch(crossing.polygon, front), log.back());
                 if (!occluder_.empty() && occluder_[crossing.polygon]) front = back = log.back();
                 log.add(left, crossing.front ? front : back);
                 left = crossing.front ? back : front;
-                ++crossed;
             }
             log.add(left, log.out());
         }

@@ -335,14 +335,14 @@ private:
 TEST(GlobalLines, GoOnWithTheSameBitsAfterAnInterruption) {
     const LinesCase c(roomWithBoxScene(), 500);
     for (const LineSet set : kSets) {
-        const GlobalLineOptions options{.lines = 1'200'000, .set = set};
+        const GlobalLineOptions options{.lines = 2'500'000, .set = set};
         const GlobalLineCounts whole = c.counts(options);
         const GlobalLines lines(c.mesh, c.caster, options);
         GlobalLineCounts counts(c.mesh.size());
-        Interrupter interrupter(700'000);
+        Interrupter interrupter(1'800'000);
         EXPECT_THROW(lines.trace(counts, interrupter), Cancelled);
         EXPECT_GT(counts.lines(), 0U); // whole batches
-        EXPECT_LT(counts.lines(), 1'200'000U);
+        EXPECT_LT(counts.lines(), 2'500'000U);
 
         std::stringstream file;
         counts.save(file);
