@@ -1,6 +1,7 @@
 #include "core/discrepancy.h"
 #include "core/low_discrepancy.h"
 #include "core/sample_points.h"
+#include "core/vector_warps.h"
 #include "core/warps.h"
 
 #include <boost/random/sobol.hpp>
@@ -254,6 +255,42 @@ TEST(Discrepancy, OfHaltonAndSobolFallsFasterThanRandom) {
     for (const Sampler sampler : {Sampler::Halton, Sampler::Sobol}) {
         EXPECT_LT(both(sampler)[0], random[0] / 4.0);
         EXPECT_LT(both(sampler)[1], random[1] / 4.0);
+    }
+}
+
+TEST(SamplePoints, FilledAreThoseAskedForOneByOne) {
+    for (const Sampler sampler : {Sampler::Random, Sampler::Stratified, Sampler::Halton, Sampler::Sobol}) {
+        const SamplePoints points(sampler, 5000, 4, 3);
+        for (std::uint32_t dimension = 0; dimension < 4; ++dimension) {
+            for (const std::uint32_t first : {0U, 255U, 1000U}) { // within, before and across runs of 256
+                std::vector<float> coordinates(777);
+                points.fill(first, dimension, coordinates);
+                for (std::uint32_t k = 0; k < coordinates.size(); ++k)
+                    EXPECT_EQ(static_cast<double>(coordinates[k]),
+                              std::floor(points.at(first + k, dimension) * 0x1p24) * 0x1p-24);
+            }
+        }
+    }
+}
+
+// 4e-7: a few roundings of numbers up to 1 and of angles up to π.
+TEST(VectorWarps, AreTheWarpsInSinglePrecision) {
+    for (int i = 0; i <= 64; ++i) {
+        for (int j = 0; j <= 64; ++j) {
+            const auto u = static_cast<float>(i) / 64.0F;
+            const auto v = static_cast<float>(j) / 64.0F;
+            const glm::dvec2 both(static_cast<double>(u), static_cast<double>(v));
+            const DiskPoint disk(u, v);
+            const glm::dvec2 exactDisk = concentricDisk(both);
+            EXPECT_NEAR(static_cast<double>(disk.x), exactDisk.x, 4e-7);
+            EXPECT_NEAR(static_cast<double>(disk.y), exactDisk.y, 4e-7);
+            EXPECT_NEAR(static_cast<double>(disk.squaredRadius), glm::dot(exactDisk, exactDisk), 4e-7);
+            const SpherePoint sphere(u, v);
+            const glm::dvec3 exactSphere = uniformSphere(both);
+            EXPECT_NEAR(static_cast<double>(sphere.x), exactSphere.x, 4e-7);
+            EXPECT_NEAR(static_cast<double>(sphere.y), exactSphere.y, 4e-7);
+            EXPECT_NEAR(static_cast<double>(sphere.z), exactSphere.z, 4e-7);
+        }
     }
 }
 
