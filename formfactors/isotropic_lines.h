@@ -63,7 +63,6 @@ public:
     /// Lines of a block, the same for the same options; neighbours follow each other.
     void fill(std::uint64_t block, Block& result, Keep keep = Keep::MeetingBounds) const;
 
-    const glm::vec3& centre() const { return centre_; }
     /// Of the bounding sphere (metres), 1e-4 larger than needed: a patch of area A is crossed with probability A / (2πR²).
     float radius() const { return radius_; }
 
