@@ -4,6 +4,8 @@
 /// factors", J. Heat Transfer 85, 1963; its inner integral in closed form, the outer by quadrature.
 #include "formfactors/closed_form.h"
 
+#include "formfactors/quadrature.h"
+
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <glm/geometric.hpp>
@@ -21,6 +23,9 @@ namespace {
 /// falls as ρ^(−2n), ρ = 2q + √(4q² + 1).
 constexpr double kFar = 2.0;  // 8 points
 constexpr double kNear = 0.5; // 16 points
+/// Radians: edges turned by less are taken as parallel. Single precision turns those of small patches as far as the second.
+constexpr double kRounding = 1e-14;
+constexpr double kSingleRounding = 1e-5;
 /// With such a gap, in radii, 8 Gauss points per axis are exact to 1e-13.
 constexpr double kApart = 3.0;
 
@@ -53,26 +58,15 @@ struct Ball {
     }
 };
 
-struct WeightedPoint {
-    glm::dvec3 point;
-    double weight; ///< m², signed
-};
-
-/// Gauss points over the triangles of a fan, 8 per axis of each. A concave polygon's fan overlaps itself with opposite signs.
+/// Gauss points over the triangles of a fan, 8 per axis of each; weights are signed: a concave polygon's fan overlaps itself.
 std::vector<WeightedPoint> gaussPoints(std::span<const glm::dvec3> polygon, const glm::dvec3& unitNormal) {
-    using Rule = boost::math::quadrature::gauss<double, 8>;
-    std::vector<std::array<double, 2>> nodes; // on [0, 1], with their weights
-    for (std::size_t k = 0; k < Rule::abscissa().size(); ++k)
-        for (const double sign : {-1.0, 1.0})
-            nodes.push_back({0.5 + 0.5 * sign * Rule::abscissa()[k], 0.5 * Rule::weights()[k]});
     std::vector<WeightedPoint> result;
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
-        const glm::dvec3 one = polygon[k] - polygon[0];
-        const glm::dvec3 two = polygon[k + 1] - polygon[0];
-        const double doubleArea = glm::dot(glm::cross(one, two), unitNormal);
-        for (const auto& [u, weightU] : nodes)
-            for (const auto& [v, weightV] : nodes)
-                result.push_back({polygon[0] + u * ((1.0 - v) * one + v * two), weightU * weightV * u * doubleArea});
+        const std::array triangle{polygon[0], polygon[k], polygon[k + 1]};
+        const std::size_t first = result.size();
+        appendGaussPoints(triangle, 8, result);
+        if (glm::dot(polygonAreaVector(triangle), unitNormal) < 0.0)
+            for (std::size_t i = first; i < result.size(); ++i) result[i].weight = -result[i].weight;
     }
     return result;
 }
@@ -127,9 +121,33 @@ std::array<double, 3> closestPlaces(const Segment& a, const Segment& b) {
     return {along0, along0 + cosine * b.length, approach};
 }
 
+/// The same for edges of one direction: ln r depends on the difference u of the places only, and
+/// 1/4 (u² − h²) ln(u² + h²) − 3/4 u² + h u atan(u/h) has it as its second derivative.
+double parallelEdgesIntegral(const Segment& a, const Segment& b) {
+    // By the middle of b, about which a small angle is as good as turned away.
+    const glm::dvec3 toB = b.at(0.5 * b.length) - a.begin;
+    const double along = glm::dot(toB, a.direction);
+    const double height = glm::length(toB - along * a.direction);
+    const double start = along - 0.5 * b.length;
+    const auto primitive = [height](double u) {
+        const double squared = u * u + height * height;
+        if (!(squared > 0.0)) return 0.0;
+        return 0.25 * (u * u - height * height) * std::log(squared) - 0.75 * u * u + height * u * std::atan2(u, height);
+    };
+    return primitive(start + b.length) + primitive(start - a.length) - primitive(start + b.length - a.length) -
+           primitive(start);
+}
+
 /// ∫∫ ln r over two edges.
-double edgePairIntegral(const Segment& a, const Segment& b) {
+double edgePairIntegral(const Segment& a, const Segment& b, Care care) {
+    using namespace boost::math::quadrature;
+    const glm::dvec3 sine = glm::cross(a.direction, b.direction);
+    const double straight = care == Care::Full ? kRounding : kSingleRounding;
+    if (glm::dot(sine, sine) < straight * straight) return parallelEdgesIntegral(a, b);
     const auto integrand = [&](double s) { return logIntegral(a.at(s), b); };
+    // Edges that are perpendicular but for rounding count for so little that a rough value will do.
+    if (care == Care::Single && std::abs(glm::dot(a.direction, b.direction)) < 10.0 * kSingleRounding)
+        return gauss<double, 7>::integrate(integrand, 0.0, a.length);
     std::array<double, 5> cuts{};
     std::size_t count = 1;
     for (const double place : closestPlaces(a, b)) cuts[count++] = std::clamp(place, 0.0, a.length);
@@ -142,17 +160,30 @@ double edgePairIntegral(const Segment& a, const Segment& b) {
         const double length = cuts[k + 1] - cuts[k];
         if (!(length > 0.0)) continue;
         const double near = std::min(distanceToSegment(a.at(cuts[k]), b), distanceToSegment(a.at(cuts[k + 1]), b));
-        using namespace boost::math::quadrature;
         if (near > kFar * length) {
             sum += gauss<double, 8>::integrate(integrand, cuts[k], cuts[k + 1]);
         } else if (near > kNear * length) {
             sum += gauss<double, 16>::integrate(integrand, cuts[k], cuts[k + 1]);
         } else {
             static tanh_sinh<double> endpointSingular; // thread-safe, though Boost 1.74 does not say const
-            sum += endpointSingular.integrate(integrand, cuts[k], cuts[k + 1], 1e-13);
+            sum += endpointSingular.integrate(integrand, cuts[k], cuts[k + 1], care == Care::Full ? 1e-13 : 1e-8);
         }
     }
     return sum;
+}
+
+/// γ / |a × b| of the angle γ between a and b, which are not parallel.
+double angleOverCross(double crossSquared, double dot) {
+    if (dot > 0.0 && crossSquared < 0.04 * dot * dot) {
+        // atan(t) / t by its series: seven terms leave 1e-12 of it.
+        const double t = crossSquared / (dot * dot);
+        const double series =
+            1.0 -
+            t * (1.0 / 3 - t * (1.0 / 5 - t * (1.0 / 7 - t * (1.0 / 9 - t * (1.0 / 11 - t * (1.0 / 13 - t / 15))))));
+        return series / dot;
+    }
+    const double sine = std::sqrt(crossSquared);
+    return std::atan2(sine, dot) / sine;
 }
 
 } // namespace
@@ -188,12 +219,13 @@ std::vector<glm::dvec3> clippedToHalfSpace(std::span<const glm::dvec3> polygon, 
 
 double pointToVisiblePolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const glm::dvec3 a = polygon[k] - point;
-        const glm::dvec3 b = polygon[(k + 1) % polygon.size()] - point;
-        const glm::dvec3 normalOfSpan = glm::cross(a, b);
-        const double sine = glm::length(normalOfSpan);
-        if (sine > 0.0) sum += glm::dot(normal, normalOfSpan) / sine * std::atan2(sine, glm::dot(a, b));
+    glm::dvec3 a = polygon.back() - point;
+    for (const glm::dvec3& vertex : polygon) {
+        const glm::dvec3 b = vertex - point;
+        const glm::dvec3 cross = glm::cross(a, b);
+        const double crossSquared = glm::dot(cross, cross);
+        if (crossSquared > 0.0) sum += glm::dot(normal, cross) * angleOverCross(crossSquared, glm::dot(a, b));
+        a = b;
     }
     return std::max(0.0, -sum / (2.0 * std::numbers::pi));
 }
@@ -204,7 +236,7 @@ double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::sp
     return pointToVisiblePolygon(point, normal, clippedToHalfSpace(polygon, point, normal));
 }
 
-double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to) {
+double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to, Care care) {
     const std::vector<glm::dvec3> a = clippedToHalfSpace(from, to[0], polygonAreaVector(to));
     const std::vector<glm::dvec3> b = clippedToHalfSpace(to, from[0], polygonAreaVector(from));
     if (a.empty() || b.empty()) return 0.0;
@@ -218,7 +250,7 @@ double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3
     for (const Segment& edgeA : edges(a)) {
         for (const Segment& edgeB : edges(b)) {
             const double cosine = glm::dot(edgeA.direction, edgeB.direction);
-            if (cosine != 0.0) sum += cosine * edgePairIntegral(edgeA, edgeB);
+            if (cosine != 0.0) sum += cosine * edgePairIntegral(edgeA, edgeB, care);
         }
     }
     return std::max(0.0, sum / (2.0 * std::numbers::pi));

@@ -24,9 +24,14 @@ double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::sp
 /// The same for a polygon that faces the element and lies above its horizon wholly: nothing is checked or clipped.
 double pointToVisiblePolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon);
 
-/// A_from · F_from,to, in m²: the same in both directions. Good to about 1e-12 of its value or 1e-15 of the smaller area,
-/// whichever is more.
-double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
+/// How carefully a contour integral is computed.
+enum class Care {
+    Full,  ///< to about 1e-12 of its value or 1e-15 of the smaller area, whichever is more
+    Single ///< for corners rounded to single precision, many times as fast: to about 1e-6
+};
+
+/// A_from · F_from,to, in m²: the same in both directions.
+double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to, Care care = Care::Full);
 
 /// F_from,to: the fraction of what leaves the front of one polygon that reaches the front of the other.
 double polygonToPolygon(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);

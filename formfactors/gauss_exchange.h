@@ -1,0 +1,27 @@
+#pragma once
+
+#include "formfactors/convex_polygon.h"
+#include "formfactors/patch_clusters.h"
+#include "formfactors/quadrature.h"
+
+#include <array>
+#include <span>
+
+namespace lambert {
+
+/// The order of Gauss's rule (see appendGaussPoints) that gives the exchange between two polygons, which lie in front of each
+/// other's planes, to about 1e-6, 1e-5 where they graze each other's plane; 0 if none up to PatchClusters::kHighestOrder does.
+/// `ratio` is the sum of their radii in distances of their centres.
+int gaussOrder(double ratio);
+
+/// ∫∫ cos cos / π r² in m² between points over one polygon (unit `normal`) and the targets of a cluster, by its rule of this
+/// order; negative where the target shows its back.
+std::array<double, PatchClusters::kLanes> exchangeWithCluster(std::span<const WeightedPoint> from,
+                                                              const glm::dvec3& normal,
+                                                              const PatchClusters::Cluster& cluster, int order);
+
+/// A_from · F_from,to in m² of two convex polygons that lie in front of each other's planes and that nothing stands between:
+/// by Gauss's rule, or exactly where they are close.
+double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane);
+
+} // namespace lambert

@@ -1,0 +1,151 @@
+#include "formfactors/patch_clusters.h"
+
+#include "formfactors/quadrature.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace lambert {
+
+namespace {
+
+Target makeTarget(std::span<const glm::dvec3> corners, const glm::dvec3& normal) {
+    Target target;
+    target.polygon = ConvexPolygon(corners);
+    target.centre = target.polygon.centre();
+    target.plane = Plane::through(target.centre, normal);
+    for (const glm::dvec3& p : corners) target.radius = std::max(target.radius, glm::distance(p, target.centre));
+    return target;
+}
+
+} // namespace
+
+PatchClusters::PatchClusters(const Scene& scene, const PatchMesh& mesh, const Occluders& occluders,
+                             Directions& directions, double tolerance)
+    : tolerance_(tolerance) {
+    std::vector<glm::dvec3> corners;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        corners.clear();
+        for (int k = 0; k < mesh.cornerCount(i); ++k) corners.emplace_back(mesh.position(i, k));
+        Target& target = targets_.emplace_back(makeTarget(corners, glm::normalize(glm::dvec3(mesh.normal[i]))));
+        target.patch = static_cast<std::uint32_t>(i);
+        target.blackBack = scene.polygons[mesh.polygon[i]].backMaterial == kNone;
+        takePlane(target, occluders.list[occluders.ofPolygon[mesh.polygon[i]]].plane);
+        if (!mesh.opacity.empty()) target.opacity = static_cast<double>(mesh.opacity[i]);
+    }
+    for (const Polygon& polygon : scene.polygons) {
+        if (!isOccluder(scene, polygon)) continue;
+        corners.clear();
+        for (int k = 0; k < polygon.size(); ++k) corners.emplace_back(corner(scene, polygon, k));
+        Target& target =
+            targets_.emplace_back(makeTarget(corners, glm::normalize(glm::dvec3(areaVector(scene, polygon)))));
+        target.patch = kNone;
+        target.blackBack = true;
+    }
+
+    for (Target& target : targets_)
+        if (target.plane.direction < 0) directions.enter(target.plane);
+    directions_ = directions.list();
+
+    std::vector<std::uint32_t> order(targets_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    glm::dvec3 lower(std::numeric_limits<double>::max()), upper = -lower;
+    for (const Target& t : targets_) {
+        lower = glm::min(lower, t.centre);
+        upper = glm::max(upper, t.centre);
+    }
+    // Targets that face elsewhere are as far as the other end of the scene.
+    if (!targets_.empty()) build(order, 0, order.size(), glm::distance(lower, upper));
+}
+
+void PatchClusters::takePlane(Target& target, const Plane& plane) const {
+    for (const glm::dvec3& p : target.polygon.points())
+        if (std::abs(plane.height(p)) > tolerance_) return;
+    const double side = glm::dot(plane.normal, target.plane.normal) > 0.0 ? 1.0 : -1.0;
+    target.plane = {side * plane.normal, side * plane.offset, plane.direction};
+}
+
+std::uint32_t PatchClusters::build(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                                   double normalWeight) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    const auto first = static_cast<std::uint32_t>(clusters_.size());
+    std::uint32_t left = 0, right = 0;
+    if (end - begin <= kLanes) {
+        addCluster(order, begin, end);
+    } else {
+        const auto key = [&](std::uint32_t t, int axis) {
+            return axis < 3 ? targets_[t].centre[axis] : normalWeight * targets_[t].plane.normal[axis - 3];
+        };
+        int widest = 0;
+        double width = -1.0;
+        for (int axis = 0; axis < 6; ++axis) {
+            double low = std::numeric_limits<double>::max(), high = -low;
+            for (std::size_t k = begin; k < end; ++k) {
+                low = std::min(low, key(order[k], axis));
+                high = std::max(high, key(order[k], axis));
+            }
+            if (high - low > width * (1.0 + 1e-9)) {
+                width = high - low;
+                widest = axis;
+            }
+        }
+        // Full clusters on the left.
+        const std::size_t middle = begin + ((end - begin) / kLanes + 1) / 2 * kLanes;
+        const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(k); };
+        std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+            const double keyA = key(a, widest), keyB = key(b, widest);
+            return keyA != keyB ? keyA < keyB : a < b;
+        });
+        left = build(order, begin, middle, normalWeight);
+        right = build(order, middle, end, normalWeight);
+    }
+    Node& node = nodes_[index];
+    node.first = first;
+    node.last = static_cast<std::uint32_t>(clusters_.size());
+    node.left = left;
+    node.right = right;
+    for (std::uint32_t c = first; c < node.last; ++c) node.extents.add(clusters_[c].extents);
+    return index;
+}
+
+void PatchClusters::addCluster(const std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end) {
+    Cluster& cluster = clusters_.emplace_back();
+    cluster.count = static_cast<std::uint32_t>(end - begin);
+    cluster.centre = glm::dvec3(0.0);
+    cluster.radius = cluster.spread = 0.0;
+    cluster.plane = targets_[order[begin]].plane;
+    cluster.flat = true;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const bool real = begin + lane < end;
+        cluster.target[lane] = order[std::min(begin + lane, end - 1)];
+        const Target& target = targets_[cluster.target[lane]];
+        cluster.normalX[lane] = target.plane.normal.x;
+        cluster.normalY[lane] = target.plane.normal.y;
+        cluster.normalZ[lane] = target.plane.normal.z;
+        cluster.radius = std::max(cluster.radius, target.radius);
+        if (real) cluster.centre += target.centre / static_cast<double>(cluster.count);
+        for (const glm::dvec3& p : target.polygon.points()) {
+            cluster.extents.add(p, directions_);
+            cluster.flat = cluster.flat && std::abs(cluster.plane.height(p)) <= tolerance_;
+        }
+        cluster.flat = cluster.flat && glm::dot(cluster.plane.normal, target.plane.normal) > 0.0;
+        for (int order_ = 1; order_ <= kHighestOrder; ++order_) {
+            std::vector<WeightedPoint> points;
+            appendGaussPoints(target.polygon.points(), order_, points);
+            Points& soa = cluster.points[static_cast<std::size_t>(order_ - 1)];
+            for (auto* list : {&soa.x, &soa.y, &soa.z, &soa.weight}) list->resize(points.size());
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                soa.x[k][lane] = points[k].point.x;
+                soa.y[k][lane] = points[k].point.y;
+                soa.z[k][lane] = points[k].point.z;
+                soa.weight[k][lane] = real ? points[k].weight : 0.0;
+            }
+        }
+    }
+    for (std::uint32_t lane = 0; lane < cluster.count; ++lane)
+        cluster.spread = std::max(cluster.spread, glm::distance(cluster.centre, targets_[cluster.target[lane]].centre));
+}
+
+} // namespace lambert
