@@ -193,7 +193,33 @@ private:
                           method_.tolerance_};
         if (!dropClearOccluders(pair)) return 0.0;
         if (occluders_.empty()) return unoccluded;
+        if (std::any_of(occluders_.begin(), occluders_.end(), [](const Occluder* o) { return o->holes; }))
+            return unoccluded * visibleShare(parts);
         return visibleExchange(pair, unoccluded, method_.options_.error);
+    }
+
+    /// The share that rays let through, between Gauss points of both.
+    double visibleShare(const FacingParts& parts) const {
+        constexpr int kOrder = 8;
+        std::vector<WeightedPoint> from, to;
+        appendGaussPoints(parts.from.points(), kOrder, from);
+        appendGaussPoints(parts.to.points(), kOrder, to);
+        const float offset = method_.rays_.originOffset(static_cast<float>(from_.radius));
+        const glm::vec3 above = offset * glm::vec3(from_.plane.normal);
+        const glm::vec3 before = offset * glm::vec3(parts.toPlane.normal);
+        double visible = 0.0, all = 0.0;
+        for (const auto& [x, weightX] : from) {
+            for (const auto& [y, weightY] : to) {
+                const glm::dvec3 d = y - x;
+                const double squared = glm::dot(d, d);
+                const double value = -weightX * weightY * glm::dot(from_.plane.normal, d) *
+                                     glm::dot(parts.toPlane.normal, d) / (squared * squared);
+                all += value;
+                const glm::vec3 origin = glm::vec3(x) + above;
+                if (!method_.rays_.occluded({origin, glm::vec3(y) + before - origin, 1.0F})) visible += value;
+            }
+        }
+        return all > 0.0 ? visible / all : 0.0;
     }
 
     const ClosedForm& method_;

@@ -19,7 +19,8 @@ struct ClosedFormOptions {
 /// reciprocal, so that both show the error. Takes time that grows with the square of the number of patches, and with the
 /// number of polygons that stand between them.
 ///
-/// Holes in an occluder are counted by rays (holesRays of them per pair); those of a patch are taken as spread evenly over it.
+/// What an occluder with holes lets through is found with 4096 rays per pair; the holes of a patch are taken as spread evenly
+/// over it.
 /// Polygons that touch face to face do not see each other.
 class ClosedForm : public FormFactorMethod {
 public:

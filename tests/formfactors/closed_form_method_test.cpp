@@ -319,6 +319,28 @@ TEST(ClosedFormMethod, WhatLeavesAnOpenSceneIsOut) {
     EXPECT_EQ(row[2], 0.0);
 }
 
+// The sheet's left half is a hole: what passes is what the right half alone would let pass. 64 rays across the sheet's
+// 1.5 see the hole's edge in steps of 1 %, which cancel over the other 63 rows.
+TEST(ClosedFormMethod, LightPassesThroughHoles) {
+    Scene scene = facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F));
+    Material& leaf = scene.materials[scene.polygons[2].material];
+    leaf.opacityTexture.texture = 0;
+    leaf.opacityCutoff = 0.5F;
+    scene.textures.push_back(
+        std::make_shared<Texture>("half", 2, 1, std::vector<std::uint8_t>{255, 255, 255, 0, 255, 255, 255, 255}));
+    SurfaceCorners surface;
+    surface.uv = {glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0), glm::vec2(0, 0)};
+    scene.polygons[2].surface = 0;
+    scene.surfaces.push_back(surface);
+    const Case holed(scene);
+
+    std::array<glm::vec3, 4> half = square(0.5F, 0.5F, 0.5F, 0.5F);
+    half[0].x = half[3].x = 0.5F;
+    const Case solid(facingSquares(half));
+    EXPECT_NEAR(holed.row(0)[1], solid.row(0)[1], 0.01 * solid.row(0)[1]);
+    EXPECT_GT(holed.row(0)[1], 1.1 * Case(facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F))).row(0)[1]);
+}
+
 TEST(ClosedFormMethod, RefusesErrorsOutOfRange) {
     const Scene scene = prepareScene(facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F)));
     const RayCaster rays(scene);
