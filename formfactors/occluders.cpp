@@ -3,6 +3,8 @@
 #include "formfactors/closed_form.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -29,18 +31,17 @@ public:
             pieces_.push_back({std::move(loop), plane, p, material.hasHoles()});
             if (!material.hasHoles()) enter(p);
         }
-        // The longest edges first: the halves of a quad become one before they join others.
+        // The longest edges first: the halves of a quad become one before they join others. Then by direction, so that the
+        // quads of a grid become rows and these the whole, not bricks that no full edge joins.
         bool joined = true;
         while (joined) {
             joined = false;
-            std::vector<std::pair<double, Edge>> edges;
-            for (const auto& [edge, owner] : owner_) {
-                const auto twin = owner_.find({edge.second, edge.first});
-                if (edge.first < edge.second && twin != owner_.end())
-                    edges.emplace_back(-glm::distance(position(edge.first), position(edge.second)), edge);
-            }
+            std::vector<std::pair<std::array<long, 4>, Edge>> edges;
+            for (const auto& [edge, owner] : owner_)
+                if (edge.first < edge.second && owner_.contains({edge.second, edge.first}))
+                    edges.emplace_back(sortKey(edge), edge);
             std::sort(edges.begin(), edges.end());
-            for (const auto& [length, edge] : edges) joined = joinAcross(edge) || joined;
+            for (const auto& [key, edge] : edges) joined = joinAcross(edge) || joined;
         }
         Occluders occluders{result(), {}};
         std::vector<std::uint32_t> number(pieces_.size(), kNone);
@@ -85,6 +86,21 @@ private:
             const auto found = owner_.find({loop[k], loop[(k + 1) % loop.size()]});
             if (found != owner_.end() && found->second == piece) owner_.erase(found);
         }
+    }
+
+    /// Length, descending, and direction, whichever way; equal for edges that differ by rounding.
+    std::array<long, 4> sortKey(const Edge& edge) const {
+        glm::dvec3 along = position(edge.second) - position(edge.first);
+        const double length = glm::length(along);
+        along /= length;
+        std::array<long, 4> key{-std::lround(1e3 * std::log(length)), 0, 0, 0};
+        long sign = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const long rounded = std::lround(1e3 * along[axis]);
+            if (sign == 0 && rounded != 0) sign = rounded > 0 ? 1 : -1;
+            key[static_cast<std::size_t>(axis) + 1] = sign * rounded;
+        }
+        return key;
     }
 
     /// How far b lies outside of the line from a to c, metres; positive where a loop about `normal` is convex.

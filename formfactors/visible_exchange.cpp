@@ -21,7 +21,9 @@ constexpr std::size_t kMostCells = 256;
 /// A cell is halved at most so often.
 constexpr int kMostHalvings = 14;
 /// Parts of the unoccluded exchange below this one are found to the absolute error of it.
-constexpr double kSmallestShare = 0.01;
+constexpr double kSmallestShare = 0.001;
+/// Smaller parts are gaps that single precision makes.
+constexpr double kRounding = 1e-6;
 
 bool allAbove(const Plane& plane, std::span<const glm::dvec3> points, double height) {
     return std::all_of(points.begin(), points.end(), [&](const auto& p) { return plane.height(p) >= height; });
@@ -383,7 +385,7 @@ double visibleExchange(const OccludedPair& pair, double unoccluded, double relat
     double sum = clear;
     for (const Cell& cell : partly)
         if (cell.low > 0.0) sum += integral.refined(cell.polygon, cell.low, error, kMostHalvings);
-    return std::min(sum, unoccluded);
+    return sum > kRounding * unoccluded ? std::min(sum, unoccluded) : 0.0;
 }
 
 } // namespace lambert

@@ -3,6 +3,8 @@
 #include "scene/scene.h"
 
 #include <array>
+#include <functional>
+#include <map>
 #include <span>
 
 namespace lambert {
@@ -20,5 +22,23 @@ Scene quadScene(std::span<const std::array<glm::vec3, 4>> quads, std::span<const
 /// A lit room of 2 × 2 × 2 m with a box on its floor, the box's base not aligned with the room. Materials: "wall" (five times),
 /// "lamp" (the ceiling, B_e = 1), "box"; all of reflectance 1/2.
 Scene roomWithBoxScene();
+
+/// Boxes whose walls are grids of quads with common vertices, of one grey material.
+class GridScene {
+public:
+    /// Where a point of the boxes is put.
+    using Map = std::function<glm::dvec3(const glm::dvec3&)>;
+
+    GridScene();
+    /// Adds six walls of n² quads each, their fronts inside or outside.
+    GridScene& box(const glm::dvec3& low, const glm::dvec3& high, int n, bool inside, const Map& map);
+    const Scene& scene() const { return scene_; }
+
+private:
+    void grid(const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3& across, int n, const Map& map);
+
+    Scene scene_;
+    std::map<std::array<long, 3>, std::uint32_t> vertices_; ///< by place before the map, in µm
+};
 
 } // namespace lambert

@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 #include <random>
 
@@ -66,7 +65,7 @@ struct Case {
     ClosedForm method;
 };
 
-using Map = std::function<glm::dvec3(glm::dvec3)>;
+using Map = GridScene::Map;
 
 glm::dvec3 same(const glm::dvec3& p) { return p; }
 glm::dvec3 sheared(const glm::dvec3& p) { return {p.x + 0.3 * p.z + 0.1 * p.y, p.y + 0.2 * p.z, p.z}; }
@@ -79,46 +78,6 @@ glm::dvec3 rotated(const glm::dvec3& p) {
 glm::dvec3 dented(const glm::dvec3& p) {
     return std::abs(p.x - 0.5) < 0.26 ? glm::dvec3(p.x, p.y, 0.25 + 0.75 * p.z) : p;
 }
-
-/// Scenes of grids of quads that share their vertices.
-class Grids {
-public:
-    Grids() {
-        scene_.materials = {greyMaterial("grey", 0.5F, 1.0F)};
-        scene_.nodes = {"grids"};
-    }
-    /// Six walls, their fronts inside or outside, of n² quads each.
-    Grids& box(const glm::dvec3& low, const glm::dvec3& high, int n, bool inside, const Map& map) {
-        const glm::dvec3 d = high - low, x(d.x, 0, 0), y(0, d.y, 0), z(0, 0, d.z);
-        const glm::dvec3 corners[6] = {low, low + x, low, low + y, low, low + z};
-        const glm::dvec3 along[6] = {y, z, z, x, x, y}, across[6] = {z, y, x, z, y, x};
-        for (int k = 0; k < 6; ++k)
-            inside ? grid(corners[k], along[k], across[k], n, map) : grid(corners[k], across[k], along[k], n, map);
-        return *this;
-    }
-    const Scene& scene() const { return scene_; }
-
-private:
-    void grid(const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3& across, int n, const Map& map) {
-        const auto vertex = [&](int a, int b) {
-            const glm::dvec3 p = corner + along * (static_cast<double>(a) / n) + across * (static_cast<double>(b) / n);
-            const std::array key{std::lround(p.x * 1e6), std::lround(p.y * 1e6), std::lround(p.z * 1e6)};
-            const auto [found, isNew] = vertices_.try_emplace(key, scene_.positions.size());
-            if (isNew) scene_.positions.emplace_back(map(p));
-            return found->second;
-        };
-        for (int a = 0; a < n; ++a) {
-            for (int b = 0; b < n; ++b) {
-                Polygon polygon;
-                polygon.vertices = {vertex(a, b), vertex(a + 1, b), vertex(a + 1, b + 1), vertex(a, b + 1)};
-                scene_.polygons.push_back(polygon);
-            }
-        }
-    }
-
-    Scene scene_;
-    std::map<std::array<long, 3>, std::uint32_t> vertices_;
-};
 
 constexpr glm::dvec3 kBoxLow{0.35, 0.3, 0.4}, kBoxHigh{0.65, 0.6, 0.7};
 
@@ -165,8 +124,8 @@ INSTANTIATE_TEST_SUITE_P(Maps, ClosedFormOf, testing::Values(same, sheared, rota
 // precision. 1e-5 is what the method promises for pairs that graze each other's plane. Rounding moves such a patch, whose
 // height over the other's plane is 1/24, by 2e-7 up or down: another 1e-5, whatever the quadrature.
 TEST_P(ClosedFormOf, FreeFactorsAreThoseOfTheContourIntegral) {
-    const Case c(Grids().box({0, 0, 0}, {1, 1, 1}, 12, true, GetParam()).scene());
-    const Case plain(Grids().box({0, 0, 0}, {1, 1, 1}, 12, true, same).scene());
+    const Case c(GridScene().box({0, 0, 0}, {1, 1, 1}, 12, true, GetParam()).scene());
+    const Case plain(GridScene().box({0, 0, 0}, {1, 1, 1}, 12, true, same).scene());
     const auto unrounded = [&](std::size_t i) {
         auto polygon = plain.polygon(i);
         for (glm::dvec3& p : polygon) p = GetParam()(p);
@@ -196,9 +155,10 @@ TEST_P(ClosedFormOf, FreeFactorsAreThoseOfTheContourIntegral) {
 // The error of Sobol points in four dimensions with a discontinuity falls about as N^(−5/8): 2^20 leave some 2e-4 of a factor
 // that is halfway hidden; the test asks for 1e-3 of the factor, and of the free factor where little is left of it.
 TEST_P(ClosedFormOf, PartlyHiddenFactorsAreThoseOfASampledIntegral) {
-    const Case plain(Grids().box({0, 0, 0}, {1, 1, 1}, 8, true, same).box(kBoxLow, kBoxHigh, 4, false, same).scene());
+    const Case plain(
+        GridScene().box({0, 0, 0}, {1, 1, 1}, 8, true, same).box(kBoxLow, kBoxHigh, 4, false, same).scene());
     const Map map = GetParam();
-    const Case c(Grids().box({0, 0, 0}, {1, 1, 1}, 8, true, map).box(kBoxLow, kBoxHigh, 4, false, map).scene());
+    const Case c(GridScene().box({0, 0, 0}, {1, 1, 1}, 8, true, map).box(kBoxLow, kBoxHigh, 4, false, map).scene());
     // Both maps are affine: what is visible between points stays so.
     std::mt19937 random(2);
     int checked = 0;
@@ -230,8 +190,10 @@ TEST_P(ClosedFormOf, PartlyHiddenFactorsAreThoseOfASampledIntegral) {
 
 // Errors of 1e-4 per partly hidden factor, of which a row has many: they cancel.
 TEST_P(ClosedFormOf, RowsCloseAndFactorsAreReciprocalAroundABox) {
-    const Case c(
-        Grids().box({0, 0, 0}, {1, 1, 1}, 6, true, GetParam()).box(kBoxLow, kBoxHigh, 3, false, GetParam()).scene());
+    const Case c(GridScene()
+                     .box({0, 0, 0}, {1, 1, 1}, 6, true, GetParam())
+                     .box(kBoxLow, kBoxHigh, 3, false, GetParam())
+                     .scene());
     std::vector<std::vector<double>> rows;
     for (std::uint32_t i = 0; i < c.mesh.size(); ++i) {
         rows.push_back(c.row(i));
@@ -248,7 +210,7 @@ TEST_P(ClosedFormOf, RowsCloseAndFactorsAreReciprocalAroundABox) {
 }
 
 TEST(ClosedFormMethod, RowsCloseInARoomThatIsNotConvex) {
-    const Case c(Grids().box({0, 0, 0}, {1, 1, 1}, 8, true, dented).scene());
+    const Case c(GridScene().box({0, 0, 0}, {1, 1, 1}, 8, true, dented).scene());
     for (std::uint32_t i = 0; i < c.mesh.size(); i += 7) EXPECT_NEAR(c.sum(c.row(i)), 1.0, 1e-5) << i;
 }
 
@@ -295,8 +257,10 @@ TEST(ClosedFormMethod, AnyOccluder) {
 
 // A box on an undivided floor: what of the floor is under the box sees the inside of its walls.
 TEST(ClosedFormMethod, NoRowIsAboveOneUnderABox) {
-    Scene scene =
-        Grids().box({0, 0, 0}, {2, 2, 2}, 1, true, same).box({0.4, 0.5, 0}, {1.1, 1.3, 0.8}, 1, false, same).scene();
+    Scene scene = GridScene()
+                      .box({0, 0, 0}, {2, 2, 2}, 1, true, same)
+                      .box({0.4, 0.5, 0}, {1.1, 1.3, 0.8}, 1, false, same)
+                      .scene();
     const Case c(scene);
     for (std::uint32_t i = 0; i < c.mesh.size(); ++i) {
         const auto row = c.row(i);
