@@ -53,7 +53,7 @@ void writeLogFile(const BakeJob& job, const BatchRow& row, SceneLog& log) {
 BatchRow runJob(const BakeArguments& a, const BakeJob& job, const std::string& place, TerminalProgress& progress) {
     SceneLog log(a.run.quiet, place, job.scene.string());
     BatchRow row;
-    resetPeakMemory();
+    resetPeakMemory(); // else the report holds the largest peak so far
     try {
         if (a.skipExisting && isUpToDate(a, job)) {
             row.status = BatchStatus::Skipped;

@@ -35,9 +35,11 @@ std::uint64_t peakMemoryBytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-void resetPeakMemory() {
+bool resetPeakMemory() {
     ::malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5"; // proc(5): resets VmHWM to what is resident now
+    std::ofstream references("/proc/self/clear_refs");
+    references << "5" << std::flush; // proc(5): resets VmHWM to what is resident now
+    return references.good();
 }
 
 } // namespace lambert

@@ -10,8 +10,8 @@ std::uint64_t residentMemoryBytes();
 /// Largest resident memory of this process, in bytes: since the last resetPeakMemory(), or since its start.
 std::uint64_t peakMemoryBytes();
 
-/// Returns freed memory to the system and starts the peak afresh, so that the next one is that of the work to come. Where
-/// the system does not allow it, the old peak stays.
-void resetPeakMemory();
+/// Returns freed memory to the system and starts the peak afresh, so that the next one is that of the work to come. False
+/// where the system does not allow it: the old peak stays.
+bool resetPeakMemory();
 
 } // namespace lambert
