@@ -100,6 +100,11 @@ void spreadWinding(Triangulation& triangulation) {
     }
 }
 
+/// Appends a face as indices of points.
+void append(Face face, std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+}
+
 } // namespace
 
 std::optional<std::vector<std::array<std::uint32_t, 3>>>
@@ -123,8 +128,7 @@ triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
     for (const Face face : triangulation.finite_face_handles()) {
         const int winding = face->info().number;
         if (winding != 0 && winding != 1) return std::nullopt;
-        if (winding == 1)
-            triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+        if (winding == 1) append(face, triangles);
     }
     return triangles;
 }
@@ -165,8 +169,7 @@ std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::s
     spreadWinding(triangulation); // counts edges crossed: both ways are one more
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (const Face face : triangulation.finite_face_handles())
-        if (face->info().number % 2 != 0)
-            triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+        if (face->info().number % 2 != 0) append(face, triangles);
     if (triangles.empty()) return std::nullopt;
     return triangles;
 }

@@ -8,8 +8,16 @@ namespace lambert {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, MatrixStorage>, 3> kNames{
-    {{"double", MatrixStorage::Double}, {"float", MatrixStorage::Float}, {"compact", MatrixStorage::Compact}}};
+struct StorageFacts {
+    std::string_view name;
+    MatrixStorage storage;
+    double bytes; //!< per factor
+};
+constexpr std::array<StorageFacts, 3> kStorages{{
+    {"double", MatrixStorage::Double, 12.0},
+    {"float", MatrixStorage::Float, 8.0},
+    {"compact", MatrixStorage::Compact, 3.01} // some steps need five bytes
+}};
 
 double entrySum(const FormFactorRow& row) {
     double sum = 0.0;
@@ -22,21 +30,15 @@ double entrySum(const FormFactorRow& row) {
 double FormFactorRow::sum() const { return entrySum(*this) + back + out; }
 
 std::optional<MatrixStorage> storageByName(std::string_view name) {
-    for (const auto& [known, storage] : kNames)
-        if (known == name) return storage;
+    for (const StorageFacts& known : kStorages)
+        if (known.name == name) return known.storage;
     return std::nullopt;
 }
 
 double bytesPerFactor(MatrixStorage storage) {
-    switch (storage) {
-    case MatrixStorage::Double:
-        return 12.0;
-    case MatrixStorage::Float:
-        return 8.0;
-    case MatrixStorage::Compact:
-        break;
-    }
-    return 3.01; // some steps need five bytes
+    return std::find_if(kStorages.begin(), kStorages.end(),
+                        [&](const StorageFacts& known) { return known.storage == storage; })
+        ->bytes;
 }
 
 FormFactorMatrix::FormFactorMatrix(std::size_t patches, MatrixStorage storage) : storage_(storage), rows_(patches) {}
@@ -116,17 +118,7 @@ void FormFactorMatrix::setRow(std::size_t patch, const FormFactorRow& row) {
     packed.count = static_cast<std::uint32_t>(row.entries.size());
     packed.back = row.back;
     packed.out = row.out;
-    switch (storage_) {
-    case MatrixStorage::Double:
-        packPlain<double>(row, packed);
-        break;
-    case MatrixStorage::Float:
-        packPlain<float>(row, packed);
-        break;
-    case MatrixStorage::Compact:
-        packCompact(row, packed);
-        break;
-    }
+    byStorage([&]<typename Value>(Value) { packPlain<Value>(row, packed); }, [&] { packCompact(row, packed); });
     rows_[patch] = std::move(packed);
 }
 

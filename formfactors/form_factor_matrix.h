@@ -67,17 +67,7 @@ public:
     template <typename Use>
     void visit(std::size_t patch, Use&& use) const {
         const PackedRow& row = rows_[patch];
-        switch (storage_) {
-        case MatrixStorage::Double:
-            visitPlain<double>(row, use);
-            break;
-        case MatrixStorage::Float:
-            visitPlain<float>(row, use);
-            break;
-        case MatrixStorage::Compact:
-            visitCompact(row, use);
-            break;
-        }
+        byStorage([&]<typename Value>(Value) { visitPlain<Value>(row, use); }, [&] { visitCompact(row, use); });
     }
 
     std::size_t entryCount() const;
@@ -105,6 +95,19 @@ private:
         std::array<double, 1 << (16 - kFractionBits)> integer; ///< 2^−k
     };
     static const PowerTable& powerTable();
+
+    /// Calls `plain` with a number of the type in which the matrix keeps its values, or `compact`.
+    template <typename Plain, typename Compact>
+    void byStorage(Plain&& plain, Compact&& compact) const {
+        switch (storage_) {
+        case MatrixStorage::Double:
+            return plain(double{});
+        case MatrixStorage::Float:
+            return plain(float{});
+        case MatrixStorage::Compact:
+            return compact();
+        }
+    }
 
     template <typename Value>
     static void packPlain(const FormFactorRow& row, PackedRow& packed);

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -16,24 +17,6 @@ namespace {
 void rejectHoles(const RTCFilterFunctionNArguments* query) {
     for (unsigned lane = 0; lane < query->N; ++lane)
         if (query->valid[lane] != 0 && liesInHole(*query, lane)) query->valid[lane] = 0;
-}
-
-LAMBERT_VECTOR_CLONES
-void loadOrigin(const glm::vec3& origin, RTCRayHit16& rays) {
-    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
-        rays.ray.org_x[lane] = origin.x;
-        rays.ray.org_y[lane] = origin.y;
-        rays.ray.org_z[lane] = origin.z;
-    }
-}
-
-LAMBERT_VECTOR_CLONES
-void loadOrigins(const RayOrigins& origins, RTCRayHit16& rays) {
-    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
-        rays.ray.org_x[lane] = origins.x[lane];
-        rays.ray.org_y[lane] = origins.y[lane];
-        rays.ray.org_z[lane] = origins.z[lane];
-    }
 }
 
 LAMBERT_VECTOR_CLONES
@@ -146,13 +129,17 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     assert(isFinite(origin));
     alignas(64) RTCRayHit16 rays;
-    loadOrigin(origin, rays);
+    std::fill_n(rays.ray.org_x, RayPacket::kSize, origin.x);
+    std::fill_n(rays.ray.org_y, RayPacket::kSize, origin.y);
+    std::fill_n(rays.ray.org_z, RayPacket::kSize, origin.z);
     impl_->trace(rays, packet);
 }
 
 void RayCaster::closest(const RayOrigins& origins, RayPacket& packet) const {
     alignas(64) RTCRayHit16 rays;
-    loadOrigins(origins, rays);
+    std::copy_n(origins.x, RayPacket::kSize, rays.ray.org_x);
+    std::copy_n(origins.y, RayPacket::kSize, rays.ray.org_y);
+    std::copy_n(origins.z, RayPacket::kSize, rays.ray.org_z);
     impl_->trace(rays, packet);
 }
 

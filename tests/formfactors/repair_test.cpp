@@ -78,16 +78,23 @@ TEST(Repair, LeavesARightMatrixAlone) {
             EXPECT_NEAR(matrix.row(i).entries[k].value / before[i].entries[k].value, 1.0, 1e-6);
 }
 
+/// Two patches of which each sees the other or leaves the scene.
+FormFactorMatrix twoPatches(double f01, double f10) {
+    FormFactorMatrix matrix(2, MatrixStorage::Double);
+    const auto set = [&](std::size_t i, std::uint32_t j, double value) {
+        FormFactorRow row;
+        if (value > 0.0) row.entries = {{j, value}};
+        row.out = 1.0 - value;
+        matrix.setRow(i, row);
+    };
+    set(0, 1, f01);
+    set(1, 0, f10);
+    return matrix;
+}
+
 // X = (N_ij + N_ji) / (N_i/A_i + N_j/A_j): two patches, 30 of 100 lines and 10 of 50.
 TEST(Repair, MergesLinesByTheirNumber) {
-    FormFactorMatrix matrix(2, MatrixStorage::Double);
-    FormFactorRow row;
-    row.entries = {{1, 0.3}};
-    row.out = 0.7;
-    matrix.setRow(0, row);
-    row.entries = {{0, 0.2}};
-    row.out = 0.8;
-    matrix.setRow(1, row);
+    FormFactorMatrix matrix = twoPatches(0.3, 0.2);
     const std::vector<float> area{2.0F, 4.0F};
     const std::vector<double> weight{100.0 / 2.0, 50.0 / 4.0};
     repair(matrix, area, weight, {.maxIterations = 0});
@@ -97,11 +104,7 @@ TEST(Repair, MergesLinesByTheirNumber) {
 }
 
 TEST(Repair, APairSeenFromOneSideOnlyIsSeenFromBoth) {
-    FormFactorMatrix matrix(2, MatrixStorage::Double);
-    FormFactorRow row;
-    row.entries = {{1, 0.5}};
-    row.out = 0.5;
-    matrix.setRow(0, row);
+    FormFactorMatrix matrix = twoPatches(0.5, 0.0);
     const std::vector<float> area{1.0F, 1.0F};
     const std::vector<double> weight{1.0, 1.0};
     repair(matrix, area, weight, {.maxIterations = 0});
