@@ -23,6 +23,7 @@ from typing import NamedTuple
 
 import mutate_gltf
 import mutate_scene
+from mutation import write
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 EXTENSIONS = (".obj", ".gltf", ".glb", ".ply", ".stl", ".mgf")
@@ -179,16 +180,13 @@ def corpus(folder, _share, _seed):
 
 
 def malformed_gltf(folder, share, seed):
-    cases = list(mutate_gltf.cases(max(1, int(800 * share)), seed))
-    for case in cases:
-        (folder / case.name).write_bytes(case.content)
-    return [folder / case.name for case in cases]
+    return [write(case, folder) for case in mutate_gltf.cases(max(1, int(800 * share)), seed)]
 
 
 def malformed(kind):
-    def write(folder, share, seed):
-        return [mutate_scene.write(case, folder) for case in mutate_scene.cases(kind, max(1, int(200 * share)), seed)]
-    return write
+    def make(folder, share, seed):
+        return [write(case, folder) for case in mutate_scene.cases(kind, max(1, int(200 * share)), seed)]
+    return make
 
 
 SETS = {"data": own_scenes, "assimp": assimp_models, "gltf": malformed_gltf,

@@ -4,22 +4,16 @@
 Every file is hostile in one way: what no exporter writes but somebody will send. First come the named cases, then
 members of the wrong JSON type at every place in turn, then flipped bytes. The same seed gives the same files.
 """
-import argparse
 import base64
 import copy
 import json
 import random
 import struct
 import sys
-from pathlib import Path
-from typing import NamedTuple
 
+
+from mutation import Case, flipped, main
 from sample_gltf import BINARY, COORDINATES, IMAGE, POSITIONS, chunk, data_uri, floats, glb, gltf, png, sound_document
-
-
-class Case(NamedTuple):
-    name: str       # of the scene's file, unique in its set
-    content: bytes
 
 
 # ---- Named cases
@@ -301,25 +295,6 @@ def wrong_member(random_, number):
     return Case(f"wrong_{number}_{label}.{'glb' if binary else 'gltf'}", (glb if binary else gltf)(document))
 
 
-def flipped(random_, content):
-    """With up to eight bytes changed, removed, repeated or exchanged for a telling one."""
-    content = bytearray(content)
-    for _ in range(random_.randint(1, 8)):
-        at = random_.randrange(len(content))
-        kind = random_.randrange(4)
-        if kind == 0:
-            content[at] ^= 1 << random_.randrange(8)
-        elif kind == 1:
-            content[at] = random_.choice(b"\0\1\x7f\x80\xff09-.{}[]\",:")
-        elif kind == 2:
-            del content[at:at + random_.randint(1, 16)]
-        else:
-            content[at:at] = content[at:at + random_.randint(1, 16)]
-        if not content:
-            break
-    return bytes(content)
-
-
 def cases(count, seed):
     """`count` cases: the named ones, as many of them as fit, then a half each by wrong members and by flipped bytes."""
     random_ = random.Random(seed)
@@ -336,17 +311,5 @@ def cases(count, seed):
             yield Case(f"flipped_{number}.{kind}", flipped(random_, sound[kind]))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--count", type=int, default=600, help="[600]")
-    parser.add_argument("--seed", type=int, default=1, help="[1]")
-    arguments = parser.parse_args()
-    arguments.folder.mkdir(parents=True, exist_ok=True)
-    for case in cases(arguments.count, arguments.seed):
-        (arguments.folder / case.name).write_bytes(case.content)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(__doc__, 600, cases))

@@ -4,21 +4,13 @@
 Per format: named cases first, then tokens exchanged for hostile ones, then flipped bytes. The same seed gives the same
 files. An OBJ comes with its material library, <name>.mtl, which is the mutated one of the two every third time.
 """
-import argparse
 import random
 import re
 import struct
 import sys
-from pathlib import Path
-from typing import NamedTuple
-
-from mutate_gltf import flipped
 
 
-class Case(NamedTuple):
-    name: str           # of the scene's file, unique in its set
-    content: bytes
-    library: bytes = b""    # of an OBJ
+from mutation import Case, flipped, library_of, main
 
 
 # ---- Sound scenes: a lamp over a floor
@@ -247,10 +239,6 @@ NAMED = {"obj": obj_cases, "ply": ply_cases, "stl": stl_cases, "mgf": mgf_cases}
 FORMATS = tuple(SOUND)
 
 
-def library_of(name):
-    return name.rpartition(".")[0] + ".mtl"
-
-
 def with_library(name, obj, mtl=MTL):
     return Case(name, obj.replace(b"LIBRARY", library_of(name).encode()), mtl)
 
@@ -274,27 +262,11 @@ def cases(kind, count, seed):
             yield with_library(name, content) if kind == "obj" else Case(name, content)
 
 
-def write(case, folder):
-    """Writes a case and returns the path of its scene."""
-    path = folder / case.name
-    path.write_bytes(case.content)
-    if case.library:
-        (folder / library_of(case.name)).write_bytes(case.library)
-    return path
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--count", type=int, default=150, help="per format [150]")
-    parser.add_argument("--seed", type=int, default=1, help="[1]")
-    arguments = parser.parse_args()
-    arguments.folder.mkdir(parents=True, exist_ok=True)
+def all_cases(count, seed):
+    """`count` cases of every format."""
     for kind in FORMATS:
-        for case in cases(kind, arguments.count, arguments.seed):
-            write(case, arguments.folder)
-    return 0
+        yield from cases(kind, count, seed)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(__doc__, 150, all_cases))
