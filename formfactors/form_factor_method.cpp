@@ -18,11 +18,8 @@ void RowAccumulator::take(FormFactorRow& row) {
     const auto drain = [this](std::uint32_t target) { return std::exchange(sums_[target], 0.0); };
     row.back = drain(back());
     row.out = drain(out());
-    std::size_t count = 0;
-    for (const std::uint64_t word : touched_) count += static_cast<std::size_t>(std::popcount(word));
     row.entries.clear();
     row.lines = std::exchange(lines_, 0);
-    row.entries.reserve(count);
     for (std::size_t i = 0; i < touched_.size(); ++i) {
         for (std::uint64_t word = std::exchange(touched_[i], 0); word != 0; word &= word - 1) {
             const auto patch = static_cast<std::uint32_t>(64 * i + static_cast<std::size_t>(std::countr_zero(word)));

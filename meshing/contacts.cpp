@@ -47,7 +47,7 @@ std::vector<PlanarContact> findContacts(const Scene& scene, const VertexIndex& i
         index.inBox(lower - tolerance, upper + tolerance, found);
         if (found.size() <= static_cast<std::size_t>(polygon.size())) continue;
         const PlaneFrame frame = planeFrame(scene, polygon);
-        PlanarContact contact{i, {}};
+        PlanarContact contact{i, {}, tolerance};
         bool touched = false;
         for (const std::uint32_t vertex : found) {
             if (std::find(polygon.vertices.begin(), polygon.vertices.end(), vertex) != polygon.vertices.end()) continue;
@@ -67,7 +67,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarCo
                                                                   const EdgeDivision& division) {
     const Polygon& polygon = scene.polygons[contact.polygon];
     const PlaneFrame frame = planeFrame(scene, polygon);
-    const auto tolerance = 2.0 * static_cast<double>(weldTolerance(scene));
     // Vertices of the scene on the border count as ends too.
     std::vector<std::uint32_t> ends = contact.vertices;
     for (int k = 0; k < polygon.size(); ++k)
@@ -82,7 +81,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarCo
             const auto [a, b] = division.segment(segment);
             if (a != end || !std::binary_search(ends.begin(), ends.end(), b)) continue;
             const glm::dvec2 middle = 0.5 * (frame.project(scene.positions[a]) + frame.project(scene.positions[b]));
-            if (depthInside(scene, polygon, frame, middle) <= tolerance) continue; // along the border
+            if (depthInside(scene, polygon, frame, middle) <= static_cast<double>(contact.tolerance))
+                continue; // along the border
             const std::vector<std::uint32_t> vertices = division.segmentVertices(segment);
             for (std::size_t k = 0; k + 1 < vertices.size(); ++k) lines.emplace_back(vertices[k], vertices[k + 1]);
         }

@@ -14,6 +14,7 @@ namespace lambert {
 struct PlanarContact {
     std::uint32_t polygon = 0;
     std::vector<std::uint32_t> vertices; //!< strictly inside, ascending; may be empty
+    float tolerance = 0.0F;              //!< metres; what is nearer to the border lies on it
 };
 
 /// Polygons that have vertices of others inside them, or edges of others across them; in order.
