@@ -66,9 +66,9 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->group("Transport");
     command
         .add_option("--resolution", a.resolution,
-                    "Pixels along a hemicube's edge, even, 16 to 4096 [128, less if time or memory ask for it]")
+                    "Pixels along a hemicube's edge, even, 4 to 4096 [128, less if time or memory ask for it]")
         ->type_name("R")
-        ->check(between(16.0, 4096.0))
+        ->check(between(4.0, 4096.0))
         ->group("Transport");
     command.add_option("--rotation", a.rotation, "Of the hemicubes about their normals [random]")
         ->check(CLI::IsMember({"random", "fixed"}))
@@ -150,7 +150,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     options.mesh.splitContacts = !a.wholeContacts;
     if (a.resolution && *a.resolution % 2 != 0)
         throw UsageError(
-            fmt::format("--resolution: found {}, allowed are even numbers from 16 to 4096", *a.resolution));
+            fmt::format("--resolution: found {}, allowed are even numbers from 4 to 4096", *a.resolution));
     options.resolution = a.resolution;
     options.largestResolution = quality.resolution;
     options.mostRays = quality.rays;

@@ -61,8 +61,8 @@ void tileDirections(const HemicubeFace& face, int column, int row, int resolutio
 Hemicube::Hemicube(const PatchMesh& mesh, const RayCaster& rays, const HemicubeOptions& options)
     : mesh_(mesh), rays_(rays), options_(options) {
     const int r = options.resolution;
-    if (r < 16 || r > 4096 || r % 2 != 0)
-        throw UsageError(fmt::format("hemicube resolution: found {}, allowed are even numbers from 16 to 4096", r));
+    if (r < 4 || r > 4096 || r % 2 != 0)
+        throw UsageError(fmt::format("hemicube resolution: found {}, allowed are even numbers from 4 to 4096", r));
     checkPerPatch(options.perPatch);
     topTiles_ = makeTiles(r, true);
     sideTiles_ = makeTiles(r, false);

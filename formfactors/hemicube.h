@@ -11,7 +11,7 @@
 namespace lambert {
 
 struct HemicubeOptions {
-    int resolution = 128;       //!< pixels along an edge of the top face; even, 16 to 4096
+    int resolution = 128;       //!< pixels along an edge of the top face; even, 4 to 4096
     int perPatch = 1;           //!< hemicubes spread over a patch, 1 to 1024; more for patches with near neighbours
     bool randomRotation = true; //!< turns each hemicube about its normal by an angle of its own
     std::uint64_t seed = 1;     //!< of the angles and places

@@ -45,7 +45,7 @@ class WrongOptions(ErrorTest):
 
     def test_values_out_of_range(self):
         for option, values in {
-                "--resolution": ("15", "14", "17", "4098", "-16", "abc", "1e2", ""),
+                "--resolution": ("15", "2", "17", "4098", "-16", "abc", "1e2", ""),
                 "--patches": ("-1", "1.5", "abc", "99999999999999999999", "300000000"),
                 "--patch-length": ("0", "nan", "-1", "1e-9", "abc"),
                 "--bounces": ("-1", "abc"), "--threads": ("-1", "abc"), "--seed": ("-1", "abc"),
