@@ -128,6 +128,16 @@ tinygltf::Model parseModel(const std::string& file, const std::string& text) {
     return model;
 }
 
+/// Before all else: the members of glTF 1.0 have other types, which are not what is wrong with such a file.
+void requireVersion2(const std::string& file, const json& document) {
+    const json::json_pointer member("/asset/version");
+    if (!document.is_object() || !document.contains(member)) return; // checkGltfMembers says so
+    const json& version = document.at(member);
+    const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+    if ((version.is_string() || version.is_number()) && !text.starts_with("2."))
+        failAtMember(file, "/asset/version", inQuotes(text), "2.x: this is another version of glTF");
+}
+
 } // namespace
 
 void failAtMember(const std::string& file, const std::string& member, const std::string& found,
@@ -160,9 +170,8 @@ tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptio
     const std::string content = readInputFile(path);
     const GltfContainer container = unpackGltf(file, content);
     json document = parseJson(file, container.jsonText);
+    requireVersion2(file, document);
     checkGltfMembers(file, document);
-    const auto version = document["asset"]["version"].get<std::string>();
-    if (!version.starts_with("2.")) failAtMember(file, "/asset/version", inQuotes(version), "2.x");
 
     std::vector<tinygltf::Buffer> buffers = readGltfBuffers(file, gltfFolder(path), container, document, options);
     const TakenOut rest(document);

@@ -259,7 +259,11 @@ TEST_F(GltfReader, RejectsMembersOfAWrongTypeWithTheirPath) {
     expectErrorAt("/nodes/0/rotation", "[0, 0, 0, 0]", "/nodes/0/rotation: found 0 0 0 0");
     expectErrorAt("/nodes/0/scale", "[1, null, 1]", "/nodes/0/scale: found [1,null,1], allowed 3 numbers");
     expectErrorAt("/asset/version", "\"1.0\"", "/asset/version: found \"1.0\", allowed 2.x");
+    expectErrorAt("/asset", "{\"version\": 1.0}", "/asset/version: found \"1.0\", allowed 2.x");
     expectErrorAt("/asset", "{}", "/asset/version: found nothing");
+    // Lists of glTF 1.0 are objects, which would be errors too.
+    expectInputError(folder.write("scene.gltf", R"({"asset": {"version": "1.0"}, "meshes": {}, "nodes": {}})"),
+                     "/asset/version: found \"1.0\", allowed 2.x: this is another version of glTF");
     expectErrorAt("/materials/0/emissiveFactor", "[1, 1]", "/materials/0/emissiveFactor: found [1,1]");
     expectErrorAt("/materials/0/emissiveFactor", "[1, -1, 1]", "/materials/0/emissiveFactor/1: found -1");
     expectErrorAt("/materials/0/pbrMetallicRoughness/metallicFactor", "2", "/metallicFactor: found 2, allowed 0 to 1");
