@@ -62,12 +62,11 @@ void MgfGeometry::execute(const MgfEntity& entity) {
     if (keyword == "f") addFace(entity);
     if (keyword == "fh") addFaceWithHoles(entity);
     if (keyword == "prism") addPrism(entity);
-    if (keyword == "sph") addFacets(entity, sphere(entity));
-    if (keyword == "cyl") addFacets(entity, cylinder(entity));
-    if (keyword == "cone") addFacets(entity, cone(entity));
-    if (keyword == "ring") addFacets(entity, ring(entity));
-    if (keyword == "torus") addFacets(entity, torus(entity));
-    if (builder_->polygonCount() > kMaxPolygons) entity.fail(fmt::format("at most {} polygons in all", kMaxPolygons));
+    if (keyword == "sph") addFacets(sphere(entity));
+    if (keyword == "cyl") addFacets(cylinder(entity));
+    if (keyword == "cone") addFacets(cone(entity));
+    if (keyword == "ring") addFacets(ring(entity));
+    if (keyword == "torus") addFacets(torus(entity));
 }
 
 void MgfGeometry::addFace(const MgfEntity& entity) {
@@ -161,9 +160,7 @@ Facets MgfGeometry::torus(const MgfEntity& entity) const {
     return torusFacets(centre.point, centre.normal, inner, outer, curveSegments_);
 }
 
-void MgfGeometry::addFacets(const MgfEntity& entity, const Facets& facets) {
-    if (builder_->polygonCount() + facets.faces.size() > kMaxPolygons)
-        entity.fail(fmt::format("at most {} polygons in all", kMaxPolygons));
+void MgfGeometry::addFacets(const Facets& facets) {
     std::vector<std::uint32_t> vertices;
     for (const glm::dvec3& point : facets.points) vertices.push_back(addPoint(point));
     const std::uint32_t of = material();

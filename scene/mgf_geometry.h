@@ -33,8 +33,6 @@ public:
     /// Adds to the report what had to be left out of the materials.
     void warnAboutMaterials();
 
-    static constexpr std::size_t kMaxPolygons = 5'000'000;
-
 private:
     void addFace(const MgfEntity& entity);
     void addFaceWithHoles(const MgfEntity& entity);
@@ -44,7 +42,7 @@ private:
     Facets cylinder(const MgfEntity& entity) const;
     Facets ring(const MgfEntity& entity) const;
     Facets torus(const MgfEntity& entity) const;
-    void addFacets(const MgfEntity& entity, const Facets& facets);
+    void addFacets(const Facets& facets);
     void addLoop(const MgfEntity& entity, std::vector<glm::dvec3> corners);
 
     const MgfVertex& vertex(const MgfEntity& entity, std::size_t k) const { return contexts_->vertex(entity, k); }

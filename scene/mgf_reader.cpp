@@ -220,7 +220,10 @@ private:
     const MgfFile* readOnce(const std::filesystem::path& path, const std::filesystem::path& nameInScene) {
         std::error_code error;
         auto& file = files_[std::filesystem::weakly_canonical(path, error).string()];
-        if (!file) file = std::make_unique<MgfFile>(path, nameInScene);
+        if (!file) {
+            file = std::make_unique<MgfFile>(path, nameInScene);
+            if (!includes_.empty()) builder_.countBytes(std::filesystem::file_size(path, error));
+        }
         return file.get();
     }
 

@@ -114,6 +114,12 @@ TEST_F(MgfErrors, BombsAreErrorsBeforeMemoryOrPatienceEnd) {
     expectError(nested, "expected at most 1000000 instances, with the arrays around it");
     expectError(kVertices + "xf -a 1000000\nsph a 1\nxf\n", "--most-polygons allows more");
 
+    // What a file includes allows polygons too: here a million and one more for each of these bytes.
+    folder.write("comments.mgf", "#" + std::string(2000, 'x') + "\n");
+    std::string scene = kVertices + "xf -a 1000 -a 1000\nf a b c\nxf\nxf -a 49000\nf a b c\nxf\n";
+    expectError(scene, "--most-polygons allows more");
+    EXPECT_EQ(readScene(folder.write("scene.mgf", "i comments.mgf\n" + scene)).scene.polygons.size(), 1'049'000U);
+
     std::string deep = kVertices;
     for (int k = 0; k < 1000; ++k) deep += "xf -t 1 0 0\n";
     expectError(deep, "expected at most 256 nested transforms");
