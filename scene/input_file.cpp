@@ -71,7 +71,10 @@ std::filesystem::path namedFile(const std::filesystem::path& folder, const std::
                                 const ReadOptions& options) {
     std::string forward = name;
     std::error_code error;
-    if (!std::filesystem::exists(folder / name, error)) std::replace(forward.begin(), forward.end(), '\\', '/');
+    if (!std::filesystem::exists(folder / name, error)) {
+        forward = asUtf8(name); // Latin-1 may have been converted with the file's system or not
+        if (!std::filesystem::exists(folder / forward, error)) std::replace(forward.begin(), forward.end(), '\\', '/');
+    }
     const std::filesystem::path start = folder.empty() ? std::filesystem::path(".") : folder;
     std::filesystem::path path = start;
     for (const std::filesystem::path& part : std::filesystem::path(forward)) path /= matchCase(path, part);

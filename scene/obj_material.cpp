@@ -65,22 +65,16 @@ void ObjMaterials::addLibraries(const std::string& argument) {
 bool ObjMaterials::isFile(const std::string& name) const {
     std::error_code error;
     try {
-        return std::filesystem::is_regular_file(namedFile(folder_, nameOnDisk(name), options_), error);
+        return std::filesystem::is_regular_file(namedFile(folder_, name, options_), error);
     } catch (const InputError&) {
         return false; // outside the folder
     }
 }
 
-/// A name in Latin-1 may have been converted with the file's system or not.
-std::string ObjMaterials::nameOnDisk(const std::string& name) const {
-    std::error_code error;
-    return std::filesystem::exists(folder_ / name, error) ? name : asUtf8(name);
-}
-
 void ObjMaterials::addLibrary(const std::string& name) {
     std::optional<ObjLines> lines;
     try {
-        const std::filesystem::path path = namedFile(folder_, nameOnDisk(name), options_);
+        const std::filesystem::path path = namedFile(folder_, name, options_);
         if (!libraries_.insert(path).second) return;
         lines.emplace(path);
     } catch (const InputError& error) {
@@ -168,7 +162,7 @@ Rgb ObjMaterials::mapFactor(const MtlMaterial& source, const std::optional<Rgb>&
 }
 
 std::uint32_t ObjMaterials::addTexture(const MtlMap& map, TextureContent content, const std::string& replacement) {
-    return builder_.addTextureFile(folder_, nameOnDisk(map.file), content, replacement);
+    return builder_.addTextureFile(folder_, map.file, content, replacement);
 }
 
 const ObjMaterial& ObjMaterials::find(const std::string& name) {

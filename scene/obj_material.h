@@ -56,7 +56,6 @@ public:
 private:
     void addLibrary(const std::string& name);
     bool isFile(const std::string& name) const;
-    std::string nameOnDisk(const std::string& name) const;
     void addMaterial(const MtlMaterial& source);
     void setReflectance(const MtlMaterial& source, Material& material, ObjMaterial& use);
     void setEmission(const MtlMaterial& source, Material& material, ObjMaterial& use);

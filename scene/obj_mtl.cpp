@@ -60,7 +60,9 @@ public:
     MtlFile run() {
         while (const auto line = lines_.next()) {
             if (line->keyword == "newmtl") {
-                if (line->rest.empty()) fail(*line, line->text, "a name after newmtl");
+                if (line->rest.empty())
+                    result_.warnings.push_back(
+                        fmt::format("line {}: a newmtl without a name was ignored, with what follows", line->number));
                 result_.materials.push_back({.name = asUtf8(line->rest)});
                 opacityIsGiven_ = false;
             } else if (!result_.materials.empty()) {
@@ -69,6 +71,7 @@ public:
                 fail(*line, line->text, "newmtl NAME before it");
             }
         }
+        std::erase_if(result_.materials, [](const MtlMaterial& material) { return material.name.empty(); });
         return std::move(result_);
     }
 

@@ -29,7 +29,7 @@ public:
         const auto [entry, isNew] = indices_.try_emplace(image, 0);
         if (!isNew) return entry->second;
         Material material;
-        material.name = files_.size() > 1 && image != kNone ? files_[image] : "default";
+        material.name = files_.size() > 1 && image != kNone ? asUtf8(files_[image]) : "default";
         if (image != kNone)
             material.reflectanceTexture.texture = builder_.addTextureFile(
                 folder_, files_[image], TextureContent::Colour, "the constant reflectance is used");

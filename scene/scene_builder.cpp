@@ -204,7 +204,7 @@ std::shared_ptr<const Texture> SceneBuilder::textureOrNull(const std::string& na
         return read();
     } catch (const InputError& error) {
         ++result_.report.missingImages;
-        warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(name), error.what(), replacement));
+        warnUnlessStrict(fmt::format("image {}: {}; {}", inQuotes(asUtf8(name)), error.what(), replacement));
         return nullptr;
     }
 }

@@ -33,7 +33,7 @@ public:
     SceneBuilder& builder() { return builder_; }
 
     /// What follows belongs to the solid `name`.
-    void beginSolid(std::string_view name) { node_ = builder_.addNode(name.empty() ? "default" : std::string(name)); }
+    void beginSolid(std::string_view name) { node_ = builder_.addNode(name.empty() ? "default" : asUtf8(name)); }
 
     std::size_t cornerCount() const { return corners_.size(); }
     void addVertex(const glm::dvec3& position) { corners_.push_back(builder_.addPosition(position * metresPerUnit_)); }

@@ -96,6 +96,30 @@ TEST_F(ObjMaterials, MissingImagesAreReplacedOrRefusedUnderStrict) {
     EXPECT_NO_THROW(readMtl("newmtl m\nKd 0.25\nmap_Kd image.ppm\n", {.strict = true}));
 }
 
+TEST_F(ObjMaterials, AMaterialWithoutNameIsIgnoredWithAWarning) {
+    const ReadResult result = readMtl("newmtl\nKd 1 0 0\nnewmtl m\nKd 0.25\nnewmtl \n");
+    ASSERT_EQ(result.scene.materials.size(), 1U);
+    EXPECT_EQ(result.scene.materials[0].reflectance, Rgb(0.25F));
+    ASSERT_EQ(result.report.warnings.size(), 2U);
+    EXPECT_TRUE(hasWarning(result, "line 1: a newmtl without a name was ignored, with what follows"));
+    EXPECT_TRUE(hasWarning(result, "line 5: a newmtl"));
+}
+
+TEST_F(ObjMaterials, FilesAreFoundByNamesInLatin1HoweverTheDiskWritesThem) {
+    const std::string latin1 = "fu\xDF"
+                               "boden.ppm",
+                      utf8 = "fu\xC3\x9F"
+                             "boden.ppm";
+    for (const std::string& onDisk : {latin1, utf8}) {
+        const auto image = folder.write(onDisk, kImage);
+        const ReadResult result = readMtl("newmtl m\nmap_Kd " + latin1 + "\n");
+        EXPECT_TRUE(result.scene.materials[0].isTextured());
+        EXPECT_TRUE(result.report.warnings.empty());
+        std::filesystem::remove(image);
+    }
+    EXPECT_TRUE(hasWarning(readMtl("newmtl m\nmap_Kd " + latin1 + "\n"), utf8));
+}
+
 TEST_F(ObjMaterials, FilesAreFoundWithBackslashesAndInAnotherCase) {
     folder.write("Maps/Wood Floor.ppm", kImage);
     folder.write("Maps/Scene.mtl", "newmtl m\nmap_Kd maps\\wood floor.PPM\n");

@@ -59,6 +59,11 @@ protected:
     TemporaryFolder folder;
 };
 
+TEST_F(StlReader, NamesInLatin1BecomeUtf8) {
+    const ReadResult result = read("solid t\xFCr\n" + kFacet + "endsolid t\xFCr\n");
+    EXPECT_EQ(result.scene.nodes, std::vector<std::string>{"t\xC3\xBCr"});
+}
+
 TEST_F(StlReader, ReadsTextInAnyCaseAndWithAnyLineEnd) {
     const std::string plain = "solid part\n" + kFacet + "endsolid part\n";
     std::string windows, capitals;
