@@ -2,6 +2,7 @@
 
 #include "baking/write_baked.h"
 #include "core/error.h"
+#include "scene/gltf_container.h"
 #include "scene/gltf_uri.h"
 #include "scene/input_file.h"
 #include "scene/mgf_file.h"
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +22,9 @@ namespace lambert {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Finds a file that the scene names as its reader does.
+using NamedFile = std::function<fs::path(std::string_view)>;
 
 /// The names of the images of a material library, as written; what cannot be read has none.
 std::vector<std::string> imagesOfMtl(const fs::path& path) {
@@ -34,12 +39,7 @@ std::vector<std::string> imagesOfMtl(const fs::path& path) {
     return images;
 }
 
-void addFilesOfObj(std::vector<fs::path>& files, const fs::path& scene) {
-    ReadOptions anywhere;
-    anywhere.allowOutsideFiles = true;
-    const auto named = [&](std::string_view name) {
-        return namedFile(scene.parent_path(), std::string(name), anywhere);
-    };
+void addFilesOfObj(std::vector<fs::path>& files, const fs::path& scene, const NamedFile& named) {
     ObjLines lines(scene);
     while (const auto line = lines.next()) {
         if (line->keyword != "mtllib") continue;
@@ -52,8 +52,9 @@ void addFilesOfObj(std::vector<fs::path>& files, const fs::path& scene) {
         for (const std::string& image : imagesOfMtl(library)) files.push_back(named(image));
 }
 
-void addFilesOfGltf(std::vector<fs::path>& files, const fs::path& scene) {
-    const auto document = nlohmann::json::parse(readInputFile(scene), nullptr, false);
+void addFilesOfGltf(std::vector<fs::path>& files, const fs::path& scene, const NamedFile& named) {
+    const std::string content = readInputFile(scene);
+    const auto document = nlohmann::json::parse(unpackGltf(scene.string(), content).jsonText, nullptr, false);
     if (!document.is_object()) return;
     for (const char* list : {"buffers", "images"}) {
         const auto found = document.find(list);
@@ -62,9 +63,17 @@ void addFilesOfGltf(std::vector<fs::path>& files, const fs::path& scene) {
             const auto uri = entry.is_object() ? entry.find("uri") : entry.end();
             if (!entry.is_object() || uri == entry.end() || !uri->is_string()) continue;
             const std::string name = uri->get<std::string>();
-            if (!isDataUri(name)) files.push_back(scene.parent_path() / pathOfUri(name));
+            if (!isDataUri(name)) files.push_back(named(pathOfUri(name)));
         }
     }
+}
+
+void addFilesOfPly(std::vector<fs::path>& files, const fs::path& scene, const NamedFile& named) {
+    constexpr std::string_view kTexture = "TextureFile ";
+    ObjLines lines(scene);
+    for (auto line = lines.next(); line && line->keyword != "end_header"; line = lines.next())
+        if (line->keyword == "comment" && line->rest.starts_with(kTexture))
+            files.push_back(named(line->rest.substr(kTexture.size())));
 }
 
 } // namespace
@@ -72,9 +81,15 @@ void addFilesOfGltf(std::vector<fs::path>& files, const fs::path& scene) {
 std::vector<fs::path> filesOfScene(const fs::path& scene) {
     if (isMgf(scene)) return filesOfMgf(scene);
     std::vector<fs::path> files{scene};
+    const auto named = [&](std::string_view name) {
+        ReadOptions anywhere;
+        anywhere.allowOutsideFiles = true; // reading decides about that; here every file counts
+        return namedFile(scene.parent_path(), std::string(name), anywhere);
+    };
     const auto format = formatOf(scene);
-    if (format == BakedFormat::Obj) addFilesOfObj(files, scene);
-    if (format == BakedFormat::Gltf) addFilesOfGltf(files, scene);
+    if (format == BakedFormat::Obj) addFilesOfObj(files, scene, named);
+    if (format == BakedFormat::Ply) addFilesOfPly(files, scene, named);
+    if (format == BakedFormat::Gltf || format == BakedFormat::Glb) addFilesOfGltf(files, scene, named);
     return files;
 }
 

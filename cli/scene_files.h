@@ -8,8 +8,8 @@
 namespace lambert {
 
 /// The files a scene is read from: itself first, then those it names, whether they exist or not: of an OBJ the material
-/// libraries and their textures, of a .gltf the buffers and images, of an MGF what it includes. Throws InputError if the scene's own file cannot be
-/// read.
+/// libraries and their textures, of glTF the buffers and images, of a PLY the textures, of an MGF what it includes. Throws
+/// InputError if the scene's own file cannot be read.
 std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& scene);
 
 /// These, and the file of overrides, whether it is used or not.

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Wrong use ends with the right exit code and one line that says what is wrong, and leaves nothing behind."""
+import json
 import os
 import resource
+import struct
 import subprocess
 import unittest
 
@@ -170,6 +172,17 @@ class WrongTargets(ErrorTest):
         (self.folder / "maps").mkdir()
         self.write("maps/wall.png", "")
         self.assert_target_refused(USAGE, "-o", "x.glb", "--image", "maps/wall.png", scene="box.obj", says="wall.png")
+
+    def test_images_of_a_ply_and_of_a_glb_are_not_overwritten(self):
+        (self.folder / "image.glb").write_bytes(b"image")
+        ply = self.folder / "scene.ply"
+        ply.write_bytes(b"ply\nformat ascii 1.0\ncomment TextureFile image.glb\nelement vertex 0\nend_header\n")
+        document = json.dumps({"asset": {"version": "2.0"}, "images": [{"uri": "image.glb"}]}).encode()
+        document += b" " * (-len(document) % 4)
+        glb = self.folder / "scene.glb"
+        glb.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(document), len(document), 0x4E4F534A) + document)
+        for scene in ply, glb:
+            self.assert_target_refused(USAGE, "-o", "image.glb", scene=scene, says="overwrite")
 
     def test_target_named_twice(self):
         here = f"../{self.folder.name}/x.glb"
