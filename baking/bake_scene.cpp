@@ -22,8 +22,10 @@ void requireLight(const Scene& scene) {
     const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
         return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
     });
-    if (!lit)
-        throw InputError("the scene has no light: no material that is used emits; give one with --emit MATERIAL=r,g,b");
+    if (lit) return;
+    const char* punctual = scene.lights.empty() ? "" : ", and lights without area are not used yet";
+    throw InputError(fmt::format(
+        "the scene has no light: no material that is used emits{}; give one with --emit MATERIAL=r,g,b", punctual));
 }
 
 /// What no material's constants tell: an emission texture may be black.
@@ -130,6 +132,10 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
 
 void collectWarnings(BakedScene& result) {
     const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
+    if (const std::size_t lights = result.scene->lights.size(); lights > 0)
+        warn(fmt::format("the scene's {} without area (point, spot, directional) {} not used yet: all light is that of "
+                         "emitting materials",
+                         lights == 1 ? "light" : fmt::format("{} lights", lights), lights == 1 ? "is" : "are"));
     if (result.rows.backFaceFraction > kBackFaceWarning)
         warn(fmt::format(
             "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "

@@ -127,6 +127,15 @@ TEST(BakeScene, ASceneWithoutLightNamesTheOption) {
     }
 }
 
+TEST(BakeScene, SaysOnceThatLightsWithoutAreaAreNotUsed) {
+    Scene scene = roomWithBoxScene();
+    EXPECT_TRUE(bake(scene, 0, 16).warnings.empty());
+    scene.lights.resize(2);
+    const BakedScene baked = bake(scene, 0, 16);
+    ASSERT_EQ(baked.warnings.size(), 1U);
+    EXPECT_NE(baked.warnings[0].find("2 lights without area"), std::string::npos) << baked.warnings[0];
+}
+
 TEST(BakeScene, EnergyImbalanceOfRawRowsIsSmallAt1000Patches) {
     const BakedScene baked = bake(roomWithBoxScene(), 1000, 64);
     EXPECT_LE(std::abs(baked.solution.energy.imbalance()), 5e-3); // reciprocity is not enforced
