@@ -185,7 +185,8 @@ glm::dvec4 TexelAverage::alongBorder(std::span<const glm::dvec2> border) const {
         const glm::dvec2& b = border[(k + 1) % border.size()];
         const bool up = a.y <= b.y;
         forRows(rows_, up ? a : b, up ? b : a, [&](int row, const glm::dvec2& from, const glm::dvec2& to) {
-            const auto [low, high] = std::minmax(from.x, to.x);
+            const double low = std::min(from.x, to.x); // not both as bindings: clang 14 captures none
+            const double high = std::max(from.x, to.x);
             const double part = glm::distance(from, to);
             forCells(columns_, low, high, [&](std::int64_t cell, double x0, double x1) {
                 const double share = part * (high > low ? (x1 - x0) / (high - low) : 1.0);
