@@ -199,7 +199,7 @@ std::uint32_t MgfGeometry::addPoint(const glm::dvec3& point) {
 }
 
 std::string MgfGeometry::materialName() {
-    const std::string name = contexts_->materialName().empty() ? "unnamed" : contexts_->materialName();
+    const std::string name = contexts_->materialName().empty() ? "unnamed" : asUtf8(contexts_->materialName());
     const std::size_t number = ++variants_[name];
     return number == 1 ? name : fmt::format("{}.{}", name, number);
 }

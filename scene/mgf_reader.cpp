@@ -184,7 +184,7 @@ private:
         if (node_ != kNone) return node_;
         const std::string name = objects_.empty() ? "default" : objects_.back();
         const auto [entry, isNew] = nodes_.try_emplace(name, kNone);
-        if (isNew) entry->second = builder_.addNode(name);
+        if (isNew) entry->second = builder_.addNode(asUtf8(name));
         return node_ = entry->second;
     }
 

@@ -136,6 +136,12 @@ TEST_F(MgfReader, AMaterialThatChangesBetweenItsUsesBecomesSeveral) {
     EXPECT_EQ(used, "0100");
 }
 
+TEST_F(MgfReader, NamesInLatin1BecomeUtf8) {
+    const Scene scene = read(kVertices + "m b\xFChne =\no t\xFCr\nf a b c\no\n").scene;
+    EXPECT_EQ(scene.materials.at(0).name, "b\xC3\xBChne");
+    EXPECT_EQ(scene.nodes, std::vector<std::string>{"t\xC3\xBCr"});
+}
+
 TEST_F(MgfReader, ObjectsNameNodesWithTheObjectsAroundThem) {
     const Scene scene = read(kTriangle + "o room\nf a b c\no chair\nf a b c\no\no lamp\no\nf a b c\no\nf a b c").scene;
     std::string nodes;
