@@ -90,6 +90,19 @@ class RoundTrip(ProgramTest):
         self.check(triangulated(generate.cornell_box()), self.WITH_MATERIALS, ROUNDING, "--patches", "0", *SAME_RAYS)
         self.check(triangulated(generate.table_room()), self.WITH_MATERIALS, ROUNDING, "--patches", "0", *SAME_RAYS)
 
+    def test_colours_of_a_ply_are_the_reflectances_of_materials(self):
+        scene = triangulated(generate.cornell_box())
+        mean = {}
+        for extension, write in (("gltf", write_gltf), ("ply", write_ply)):
+            write(scene, self.folder)
+            report = self.bake(self.folder / f"{scene.name}.{extension}", "--emit", f"*={EMITTED}", "--patches", "0",
+                               "-o", self.folder / "baked.glb", *SAME_RAYS)
+            area = sum(material["area"] for material in report["materials"])
+            mean[extension] = [sum(material["area"] * material["mean_irradiance"][channel]
+                                   for material in report["materials"]) / area for channel in range(3)]
+        for f, e in zip(mean["ply"], mean["gltf"]):
+            self.assert_close(f, e, ROUNDING, "mean irradiance of all materials")
+
     def test_refined_meshes_are_the_same(self):
         options = ("--patch-length", "0.1", *SAME_RAYS)
         self.check(triangulated(generate.cornell_box()), self.WITH_MATERIALS, ROUNDING, *options)
