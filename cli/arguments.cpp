@@ -149,8 +149,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     options.mesh.patches = a.patches;
     options.mesh.splitContacts = !a.wholeContacts;
     if (a.resolution && *a.resolution % 2 != 0)
-        throw UsageError(
-            fmt::format("--resolution: found {}, allowed are even numbers from 4 to 4096", *a.resolution));
+        throw UsageError(fmt::format("--resolution: found {}, allowed are even numbers from 4 to 4096", *a.resolution));
     options.resolution = a.resolution;
     options.largestResolution = quality.resolution;
     options.mostRays = quality.rays;
