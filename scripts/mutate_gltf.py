@@ -12,7 +12,7 @@ import struct
 import sys
 
 
-from mutation import Case, flipped, main
+from mutation import SOUND_NAME, Case, flipped, main
 from sample_gltf import BINARY, COORDINATES, IMAGE, POSITIONS, chunk, data_uri, floats, glb, gltf, png, sound_document
 
 
@@ -296,13 +296,15 @@ def wrong_member(random_, number):
 
 
 def cases(count, seed):
-    """`count` cases: the named ones, as many of them as fit, then a half each by wrong members and by flipped bytes."""
+    """The sound scenes and `count` cases: the named ones, as many as fit, then a half each by wrong members and flipped bytes."""
+    sound = {"glb": glb(sound_document()), "gltf": gltf(sound_document())}
+    for kind, content in sound.items():
+        yield Case(f"{SOUND_NAME}.{kind}", content)
     random_ = random.Random(seed)
     named = list(named_cases())
     if len(named) > count * 2 // 3:
         named = random_.sample(named, count * 2 // 3)
     yield from named
-    sound = {"glb": glb(sound_document()), "gltf": gltf(sound_document())}
     for number in range(count - len(named)):
         if number % 2 == 0:
             yield wrong_member(random_, number)

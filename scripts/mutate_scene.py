@@ -10,7 +10,7 @@ import struct
 import sys
 
 
-from mutation import Case, flipped, library_of, main
+from mutation import SOUND_NAME, Case, flipped, library_of, main
 
 
 # ---- Sound scenes: a lamp over a floor
@@ -89,6 +89,7 @@ m wood =
     sides 1
 v a =
     p 0 0 0
+    n 0 0 1
 v b =
     p 1 0 0
 v c =
@@ -102,7 +103,7 @@ f a b c
 sph a 0.25
 cyl a 0.1 b
 cone a 0.1 b 0
-ring a
+ring a 0.1 0.3
 xf
 o
 """
@@ -244,7 +245,10 @@ def with_library(name, obj, mtl=MTL):
 
 
 def cases(kind, count, seed):
-    """`count` cases of a format, named ones first and at most half of them."""
+    """The sound scenes and `count` cases of a format, named ones first and at most half of them."""
+    for number, content in enumerate(SOUND[kind]):
+        name = f"{SOUND_NAME}_{number}.{kind}"
+        yield with_library(name, content) if kind == "obj" else Case(name, content)
     random_ = random.Random(f"{kind} {seed}")
     named = [Case(f"{name}.{kind}", content) for name, content in NAMED[kind]()]
     if kind == "obj":

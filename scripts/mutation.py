@@ -3,6 +3,8 @@ import argparse
 from pathlib import Path
 from typing import NamedTuple
 
+SOUND_NAME = "sound"    # begins the names of scenes that must be baked: of one that is not, all mutations would be refused alike
+
 
 class Case(NamedTuple):
     name: str               # of the scene's file, unique in its set
