@@ -21,6 +21,7 @@ namespace {
 using Cluster = PatchClusters::Cluster;
 /// Factors below this are rounding: the contour integral is good to 1e-15 of the smaller area.
 constexpr double kSmallestFactor = 1e-14;
+constexpr double kUpright = 4.0; // see gaussOrder
 
 /// Lowest and highest corner over a plane.
 std::array<double, 2> cornerHeights(const Plane& plane, std::span<const glm::dvec3> points) {
@@ -112,13 +113,16 @@ private:
         if (over[1] <= t) return;
         const double nearest = glm::distance(cluster.centre, from_.centre) - cluster.spread;
         const double ratio = nearest > 0.0 ? (from_.radius + cluster.radius) / nearest : 1e30;
-        const int order = gaussOrder(ratio);
-        bool oneByOne = order == 0 || over[0] < -t || !cluster.flat;
+        bool upright = over[0] >= kUpright * cluster.radius;
+        bool oneByOne = over[0] < -t || !cluster.flat;
         if (!oneByOne) {
             const auto here = cornerHeights(cluster.plane, from_.polygon.points());
             if (here[0] >= -t && here[1] <= t) return; // in its plane
             oneByOne = here[0] < -t && here[1] > t;
+            upright = upright && std::max(here[0], -here[1]) >= kUpright * from_.radius;
         }
+        const int order = gaussOrder(ratio, upright);
+        oneByOne = oneByOne || order == 0;
         if (oneByOne) {
             for (std::uint32_t lane = 0; lane < cluster.count; ++lane) addPair(cluster.target[lane], firstOccluder);
             return;

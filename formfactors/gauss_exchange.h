@@ -10,9 +10,9 @@
 namespace lambert {
 
 /// The order of Gauss's rule (see appendGaussPoints) that gives the exchange between two polygons, which lie in front of each
-/// other's planes, to about 1e-6, 1e-5 where they graze each other's plane; 0 if none up to PatchClusters::kHighestOrder does.
-/// `ratio` is the sum of their radii in distances of their centres.
-int gaussOrder(double ratio);
+/// other's planes, to 1e-6 or less, at worst 1e-5; 0 if none up to PatchClusters::kHighestOrder does. `ratio` is the sum of
+/// their radii in distances of their centres; `upright`: each keeps away from the other's plane by four of its radii.
+int gaussOrder(double ratio, bool upright = false);
 
 /// ∫∫ cos cos / π r² in m² between points over one polygon (unit `normal`) and the targets of a cluster, by its rule of this
 /// order; negative where the target shows its back.

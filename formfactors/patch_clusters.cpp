@@ -134,6 +134,7 @@ void PatchClusters::addCluster(const std::vector<std::uint32_t>& order, std::siz
         for (int order_ = 1; order_ <= kHighestOrder; ++order_) {
             std::vector<WeightedPoint> points;
             appendGaussPoints(target.polygon.points(), order_, points);
+            if (points.size() % 2 != 0) points.push_back({points.back().point, 0.0});
             Points& soa = cluster.points[static_cast<std::size_t>(order_ - 1)];
             for (auto* list : {&soa.x, &soa.y, &soa.z, &soa.weight}) list->resize(points.size());
             for (std::size_t k = 0; k < points.size(); ++k) {

@@ -35,7 +35,7 @@ public:
         std::uint32_t left = 0, right = 0; ///< children; 0: a leaf of one cluster
     };
 
-    /// Gauss points of eight targets: point k of lane l at [k][l].
+    /// Gauss points of eight targets, an even number: point k of lane l at [k][l].
     struct Points {
         std::vector<std::array<double, kLanes>> x, y, z, weight; ///< weights in m²; 0 in lanes without a target
     };
