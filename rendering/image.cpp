@@ -46,17 +46,6 @@ std::vector<unsigned char> srgbBytes(const Image& image, float ev) {
     return bytes;
 }
 
-/// The content of a file of this name. In memory, because not every writer of OpenImageIO notices that the disk is full.
-std::vector<unsigned char> encoded(const std::filesystem::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
-    std::vector<unsigned char> content;
-    OIIO::Filesystem::IOVecOutput memory(content);
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string(), &memory);
-    if (!output) throw SystemError(fmt::format("{}: cannot write: {}", path.string(), OIIO::geterror()));
-    if (!output->open(path.string(), spec) || !output->write_image(spec.format, pixels) || !output->close())
-        throw SystemError(fmt::format("{}: cannot write: {}", path.string(), output->geterror()));
-    return content;
-}
-
 } // namespace
 
 ImageFormat imageFormatOf(const std::filesystem::path& path) {
@@ -69,8 +58,8 @@ ImageFormat imageFormatOf(const std::filesystem::path& path) {
         fmt::format("{}: a picture's name must end in .png (tone-mapped) or .exr (linear radiance)", path.string()));
 }
 
-void writeImage(const Image& image, const std::filesystem::path& path, float ev) {
-    const bool linear = imageFormatOf(path) == ImageFormat::Exr;
+std::string encodeImage(const Image& image, ImageFormat format, float ev) {
+    const bool linear = format == ImageFormat::Exr;
     OIIO::ImageSpec spec(image.width, image.height, 3, linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     spec.attribute("Software", "Lambert");
@@ -78,8 +67,18 @@ void writeImage(const Image& image, const std::filesystem::path& path, float ev)
     if (linear) spec.attribute("DateTime", "1970:01:01 00:00:00");
     const std::vector<unsigned char> bytes = linear ? std::vector<unsigned char>() : srgbBytes(image, ev);
     const void* pixels = linear ? static_cast<const void*>(image.pixels.data()) : bytes.data();
-    const std::vector<unsigned char> content = encoded(path, spec, pixels);
-    writeWholeFile(path, {reinterpret_cast<const char*>(content.data()), content.size()});
+    // In memory, because not every writer of OpenImageIO notices that the disk is full.
+    std::vector<unsigned char> content;
+    OIIO::Filesystem::IOVecOutput memory(content);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(linear ? "a.exr" : "a.png", &memory);
+    if (!output) throw SystemError(fmt::format("picture: {}", OIIO::geterror()));
+    if (!output->open("", spec) || !output->write_image(spec.format, pixels) || !output->close())
+        throw SystemError(fmt::format("picture: {}", output->geterror()));
+    return {content.begin(), content.end()};
+}
+
+void writeImage(const Image& image, const std::filesystem::path& path, float ev) {
+    writeWholeFile(path, encodeImage(image, imageFormatOf(path), ev));
 }
 
 } // namespace lambert

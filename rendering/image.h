@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace lambert {
@@ -33,14 +34,17 @@ enum class ImageFormat { Exr, Png };
 /// is allowed, if it is neither .exr nor .png.
 ImageFormat imageFormatOf(const std::filesystem::path& path);
 
-/// Writes an image, whole or not at all, with the same bytes for the same pixels.
+/// The content of an image file, the same bytes for the same pixels.
 ///
 /// - .exr: the pixels as linear floats, `ev` unused.
 /// - .png: 8-bit sRGB, with an ordered dither of ±0.5/255 against banding. Radiance is tone-mapped at `ev`
-/// (see
-///   toneMap); display colours are taken as they are.
+/// (see toneMap); display colours are taken as they are.
 ///
-/// Throws UsageError for any other extension, SystemError if the file cannot be written.
+/// Throws SystemError for want of memory.
+std::string encodeImage(const Image& image, ImageFormat format, float ev);
+
+/// Writes the image in the format of the name's extension, whole or not at all. Throws UsageError for any other extension,
+/// SystemError if the file cannot be written.
 void writeImage(const Image& image, const std::filesystem::path& path, float ev);
 
 } // namespace lambert

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+/// Text for HTML or XML, in an element or a quoted attribute. What is not UTF-8 (names come from files) and what XML forbids
+/// becomes U+FFFD.
+std::string htmlEscaped(std::string_view text);
+
+/// A file as part of a page: data:MEDIATYPE;base64,…
+std::string dataUri(std::string_view mediaType, std::string_view content);
+
+} // namespace lambert

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+/// A cell's text, and whether it is to stand out.
+struct HtmlCell {
+    std::string text;
+    bool strong = false;
+    HtmlCell(std::string t = {}, bool s = false) : text(std::move(t)), strong(s) {}
+};
+
+/// Texts are plain and escaped by the page. The first column holds names, the others figures.
+struct HtmlTable {
+    std::string caption;
+    std::vector<std::string> head;           //!< #columns
+    std::vector<std::vector<HtmlCell>> rows; //!< #columns each; an empty row is a rule
+};
+
+/// Something to look at. `content` is markup: an `<svg>` or `<img>` element.
+struct HtmlFigure {
+    std::string content;
+    std::string caption; //!< plain text
+};
+
+/// A page that is one file: no script, no link to anything outside, light or dark as the reader's system is, fit for a window of
+/// 1280 pixels and for paper. Its parts follow one another in the order of the calls. Names are escaped.
+class HtmlPage {
+public:
+    HtmlPage(std::string_view title, std::string_view subtitle);
+
+    void section(std::string_view heading);
+    void paragraph(std::string_view text);
+    void table(const HtmlTable& table);
+    void figures(const std::vector<HtmlFigure>& figures, int columns);
+    /// A figure on the left, a table beside it.
+    void figureAndTable(const HtmlFigure& figure, const HtmlTable& table);
+    /// A term and what it means, each.
+    struct Definition {
+        std::string term, meaning;
+    };
+    void definitions(const std::vector<Definition>& definitions);
+    /// A part that is closed until the reader opens it.
+    void foldedTable(std::string_view summary, const HtmlTable& table);
+
+    std::string text() const; //!< the whole file, UTF-8
+
+private:
+    std::string title_, body_;
+};
+
+/// An `<img>` element with the PNG inside. `alternative` is for who cannot see it.
+std::string htmlPng(std::string_view png, int width, int height, std::string_view alternative);
+
+} // namespace lambert

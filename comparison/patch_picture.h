@@ -1,0 +1,25 @@
+#pragma once
+
+#include "comparison/colour_scale.h"
+#include "core/progress.h"
+#include "meshing/patch_mesh.h"
+#include "rendering/image.h"
+#include "scene/ray_caster.h"
+
+#include <span>
+
+namespace lambert {
+
+struct PictureSize {
+    int width = 512, height = 512; //!< pixels
+    int samplesPerAxis = 3;        //!< per pixel, see RenderOptions
+};
+
+/// The scene with each patch in the colour of its value (#patches), on a neutral grey. Of display colours. Throws Cancelled.
+Image patchPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> values,
+                   const ColourScale& scale, const Camera& camera, const PictureSize& size, Progress& progress);
+
+/// The picture above a bar with the scale's colours and decades: for a file that is looked at alone.
+Image withScaleBar(const Image& picture, const ColourScale& scale);
+
+} // namespace lambert
