@@ -150,19 +150,24 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
-MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
-    requireLight(scene);
+MeshedScene meshUnlitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
     MeshedScene result;
-    const bool keepPolygons = !options.mesh.patchLength && options.mesh.patches == std::size_t{0};
+    const bool keepPolygons = !options.patchLength && options.patches == std::size_t{0};
     progress.begin("mesh", 0);
     result.scene = std::make_shared<Scene>(prepareScene(
         scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons, .addCrossings = !keepPolygons},
         &result.prepareReport));
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
-    result.mesh = buildPatchMesh(*result.scene, options.mesh, progress, &result.meshReport);
-    requireLight(result.mesh);
+    result.mesh = buildPatchMesh(*result.scene, options, progress, &result.meshReport);
     progress.end();
+    return result;
+}
+
+MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
+    requireLight(scene);
+    MeshedScene result = meshUnlitScene(scene, options.mesh, progress);
+    requireLight(result.mesh);
     result.resolution = options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options);
     return result;
 }

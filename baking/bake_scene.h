@@ -53,6 +53,9 @@ struct MeshedScene {
     MeshReport meshReport;
 };
 
+/// Prepares and meshes a scene, lit or not; `resolution` stays 0. Throws InputError if no polygon has any size, Cancelled.
+MeshedScene meshUnlitScene(const Scene& scene, const MeshOptions& options, Progress& progress);
+
 /// Prepares and meshes a scene and chooses the resolution. Throws InputError if the scene has no light, Cancelled.
 MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress);
 

@@ -37,7 +37,7 @@ const Quality& qualityOf(const std::string& name) {
 
 } // namespace
 
-void addTransportArguments(CLI::App& command, TransportArguments& a) {
+void addMeshArguments(CLI::App& command, TransportArguments& a) {
     command
         .add_option("--quality", a.quality,
                     "preview, normal or high: patches, resolution and tolerance, unless given [normal]")
@@ -61,6 +61,10 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("DEGREES")
         ->check(between(0.0, 180.0))
         ->group("Mesh");
+}
+
+void addTransportArguments(CLI::App& command, TransportArguments& a) {
+    addMeshArguments(command, a);
     command.add_option("--method", a.method, "How form factors are computed [hemicube]")
         ->check(CLI::IsMember({"hemicube"}))
         ->group("Transport");
@@ -105,6 +109,13 @@ void addPictureArguments(CLI::App& command, PictureArguments& a) {
     command.add_option("--image", a.path, "Renders the baked mesh: linear .exr or tone-mapped .png")
         ->type_name("FILE")
         ->group("Picture");
+    addCameraArguments(command, a);
+    command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
+        ->check(between(1, 64))
+        ->group("Picture");
+}
+
+void addCameraArguments(CLI::App& command, PictureArguments& a) {
     command.add_option("--size", a.size, "[512x512]")->type_name("WxH")->group("Picture");
     auto* camera =
         command.add_option("--camera", a.camera, "A camera of the scene, by name")->type_name("NAME")->group("Picture");
@@ -119,9 +130,6 @@ void addPictureArguments(CLI::App& command, PictureArguments& a) {
     command.add_option("--fov", a.fov, "Vertical field of view [45]")
         ->type_name("DEGREES")
         ->needs(eye)
-        ->group("Picture");
-    command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
-        ->check(between(1, 64))
         ->group("Picture");
 }
 

@@ -47,9 +47,11 @@ struct PictureArguments {
     int samples = 4;
 };
 
-void addTransportArguments(CLI::App& command, TransportArguments& arguments);
+void addMeshArguments(CLI::App& command, TransportArguments& arguments);
+void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< and those of the mesh
 void addRunArguments(CLI::App& command, RunArguments& arguments);
-void addPictureArguments(CLI::App& command, PictureArguments& arguments);
+void addCameraArguments(CLI::App& command, PictureArguments& arguments);  ///< size and camera
+void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< and file and samples
 
 /// Throws UsageError.
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);

@@ -26,32 +26,6 @@ Json cameraJson(const Picture& picture) {
             {"height", picture.height}};
 }
 
-/// How the scene was read and what was changed of it, by options or by the overrides file.
-Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
-    Json emit = Json::array(), reflectance = Json::array(), twoSided = Json::object();
-    const auto setting = [](const std::string& name, const Rgb& c) {
-        return fmt::format("{}={},{},{}", name, c.x, c.y, c.z);
-    };
-    for (const MaterialOverride& change : overrides.changes.materials) {
-        if (change.emittedRadiance) emit.push_back(setting(change.name, *change.emittedRadiance));
-        if (change.reflectance) reflectance.push_back(setting(change.name, *change.reflectance));
-        if (change.twoSided) twoSided[change.name] = *change.twoSided;
-    }
-    Json exclude = Json::array(), occludeOnly = Json::array();
-    for (const NodeOverride& change : overrides.changes.nodes)
-        (change.treatment == NodeOverride::Treatment::Exclude ? exclude : occludeOnly).push_back(change.name);
-    return {{"unit", overrides.metresPerUnit},
-            {"two_sided", overrides.twoSided},
-            {"two_sided_materials", twoSided},
-            {"emit", emit},
-            {"reflectance", reflectance},
-            {"exclude", exclude},
-            {"occlude_only", occludeOnly},
-            {"overrides", overrides.file.empty() ? Json(nullptr) : Json(overrides.file.string())},
-            {"strict", scene.strict},
-            {"allow_outside_files", scene.allowOutsideFiles}};
-}
-
 Json optionsJson(const BakeReportInput& in) {
     const BakedScene& baked = in.baked;
     Json options = sceneOptionsJson(in.scene, in.read.overrides);
@@ -90,6 +64,31 @@ Json meshJson(const BakedScene& baked) {
 }
 
 } // namespace
+
+Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
+    Json emit = Json::array(), reflectance = Json::array(), twoSided = Json::object();
+    const auto setting = [](const std::string& name, const Rgb& c) {
+        return fmt::format("{}={},{},{}", name, c.x, c.y, c.z);
+    };
+    for (const MaterialOverride& change : overrides.changes.materials) {
+        if (change.emittedRadiance) emit.push_back(setting(change.name, *change.emittedRadiance));
+        if (change.reflectance) reflectance.push_back(setting(change.name, *change.reflectance));
+        if (change.twoSided) twoSided[change.name] = *change.twoSided;
+    }
+    Json exclude = Json::array(), occludeOnly = Json::array();
+    for (const NodeOverride& change : overrides.changes.nodes)
+        (change.treatment == NodeOverride::Treatment::Exclude ? exclude : occludeOnly).push_back(change.name);
+    return {{"unit", overrides.metresPerUnit},
+            {"two_sided", overrides.twoSided},
+            {"two_sided_materials", twoSided},
+            {"emit", emit},
+            {"reflectance", reflectance},
+            {"exclude", exclude},
+            {"occlude_only", occludeOnly},
+            {"overrides", overrides.file.empty() ? Json(nullptr) : Json(overrides.file.string())},
+            {"strict", scene.strict},
+            {"allow_outside_files", scene.allowOutsideFiles}};
+}
 
 Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -160,9 +159,11 @@ Json bakeReport(const BakeReportInput& in) {
     return report;
 }
 
-void writeJson(const Json& json, const std::filesystem::path& path) {
+std::string jsonText(const Json& json) {
     // Names in files need not be UTF-8.
-    writeWholeFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
+
+void writeJson(const Json& json, const std::filesystem::path& path) { writeWholeFile(path, jsonText(json)); }
 
 } // namespace lambert

@@ -33,8 +33,14 @@ struct BakeReportInput {
     double readSeconds = 0.0, writeSeconds = 0.0, totalSeconds = 0.0;
 };
 
+/// How the scene was read and what was changed of it, by options or by the overrides file.
+nlohmann::ordered_json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides);
+
 /// The report of one bake; keys are documented in docs/output.md.
 nlohmann::ordered_json bakeReport(const BakeReportInput& input);
+
+/// A report as text.
+std::string jsonText(const nlohmann::ordered_json& json);
 
 /// Writes a report to a file, whole.
 void writeJson(const nlohmann::ordered_json& json, const std::filesystem::path& path);

@@ -12,6 +12,7 @@ namespace lambert {
 using CommandRun = std::function<ExitCode()>;
 void addBakeCommand(CLI::App& program, CommandRun& run);
 void addProbeCommand(CLI::App& program, CommandRun& run);
+void addCompareCommand(CLI::App& program, CommandRun& run);
 void addInfoCommand(CLI::App& program, CommandRun& run);
 void addVerifyCommand(CLI::App& program, CommandRun& run);
 

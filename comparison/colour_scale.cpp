@@ -1,5 +1,7 @@
 #include "comparison/colour_scale.h"
 
+#include "scene/texture.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +19,11 @@ Rgb viridis(float t) {
     const std::size_t k = std::min(static_cast<std::size_t>(place), kColours.size() - 2);
     const float part = place - static_cast<float>(k);
     return (1.0F - part) * colour(k) + part * colour(k + 1);
+}
+
+Rgb linearDisplay(const Rgb& srgb) {
+    return {srgbDecoded(static_cast<double>(srgb.x)), srgbDecoded(static_cast<double>(srgb.y)),
+            srgbDecoded(static_cast<double>(srgb.z))};
 }
 
 ColourScale::ColourScale(std::span<const float> values, int mostDecades) : lowest_(-1), highest_(0) {

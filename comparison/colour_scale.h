@@ -12,6 +12,9 @@ namespace lambert {
 /// colour-blind and in grey as well. `t` in [0, 1] (clamped); encoded sRGB.
 Rgb viridis(float t);
 
+/// An encoded sRGB colour as the linear one that pictures hold.
+Rgb linearDisplay(const Rgb& srgb);
+
 /// Values to colours on a logarithmic scale of whole decades.
 class ColourScale {
 public:

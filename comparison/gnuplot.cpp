@@ -125,6 +125,7 @@ std::string runGnuplot(const std::string& script, const Progress& progress) {
     std::string output, errors;
     exchange(in, out, complaints, script, output, errors, progress);
     if (child.wait() != 0) {
+        progress.throwIfCancelled(); // Ctrl-C goes to both
         const std::size_t from = errors.find_first_not_of(" \t\r\n");
         fail(from == std::string::npos ? "failed" : errors.substr(from, errors.find('\n', from) - from));
     }

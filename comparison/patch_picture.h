@@ -15,11 +15,16 @@ struct PictureSize {
     int samplesPerAxis = 3;        //!< per pixel, see RenderOptions
 };
 
+/// The scene with each patch in one colour (#patches, linear display colours), on a neutral grey. Throws Cancelled.
+Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const Rgb> colours, const Camera& camera,
+                  const PictureSize& size, Progress& progress);
+
+/// The scene with each patch in its own grey, by how it is turned to the camera: for scenes without light.
+Image headlightPicture(const PatchMesh& mesh, const RayCaster& rays, const Camera& camera, const PictureSize& size,
+                       Progress& progress);
+
 /// The scene with each patch in the colour of its value (#patches), on a neutral grey. Of display colours. Throws Cancelled.
 Image patchPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> values,
                    const ColourScale& scale, const Camera& camera, const PictureSize& size, Progress& progress);
-
-/// The picture above a bar with the scale's colours and decades: for a file that is looked at alone.
-Image withScaleBar(const Image& picture, const ColourScale& scale);
 
 } // namespace lambert

@@ -14,4 +14,7 @@ std::uint64_t peakMemoryBytes();
 /// where the system does not allow it: the old peak stays.
 bool resetPeakMemory();
 
+/// Processor time that this process has taken since its start, all threads and the system's work for them, in seconds.
+double processorSeconds();
+
 } // namespace lambert

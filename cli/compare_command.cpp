@@ -1,0 +1,227 @@
+#include "cli/arguments.h"
+#include "cli/bake_report.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/scene_files.h"
+#include "cli/targets.h"
+#include "cli/terminal_progress.h"
+#include "cli/terminal_text.h"
+#include "cli/validators.h"
+
+#include "comparison/form_factor_page.h"
+#include "comparison/form_factor_report.h"
+#include "comparison/gnuplot.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "core/whole_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace lambert {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct CompareFormFactorsArguments {
+    SceneArguments scene;
+    TransportArguments transport; //!< of which only the mesh
+    PictureArguments picture;     //!< of which only size and camera
+    RunArguments run;
+    fs::path output;
+    std::string methods = "all";
+    std::vector<std::string> efforts; //!< METHOD=E,E,…
+    std::string reference = "auto";
+    int seeds = 5;
+    std::optional<double> threshold;
+};
+
+std::vector<std::string> parts(const std::string& text) {
+    std::vector<std::string> result(1);
+    for (const char c : text) {
+        if (c == ',')
+            result.emplace_back();
+        else
+            result.back() += c;
+    }
+    return result;
+}
+
+using Ladder = FormFactorComparisonOptions::Ladder;
+
+std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
+    std::vector<Ladder> result;
+    const auto add = [&](const ComparedMethod& method) {
+        if (std::any_of(result.begin(), result.end(), [&](const Ladder& l) { return l.method == &method; }))
+            throw UsageError(fmt::format("--methods: {} is named twice", method.name));
+        result.push_back({&method, method.ladder});
+    };
+    if (a.methods == "all")
+        for (const ComparedMethod& method : comparedMethods()) add(method);
+    else
+        for (const std::string& name : parts(a.methods)) add(comparedMethod(name));
+    for (const std::string& text : a.efforts) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos)
+            throw UsageError(fmt::format("--efforts: found \"{}\", expected METHOD=EFFORT,EFFORT,…", text));
+        const ComparedMethod& method = comparedMethod(text.substr(0, equals));
+        const auto ladder =
+            std::find_if(result.begin(), result.end(), [&](const Ladder& l) { return l.method == &method; });
+        if (ladder == result.end())
+            throw UsageError(fmt::format("--efforts: {} is not among the compared methods", method.name));
+        ladder->efforts.clear();
+        for (const std::string& effort : parts(text.substr(equals + 1)))
+            ladder->efforts.push_back(parseEffort(method, effort));
+    }
+    return result;
+}
+
+/// What can keep the page from being written is found before the work; a folder that is missing is made after it.
+void checkFolder(const CompareFormFactorsArguments& a, const FormFactorComparisonOptions& options) {
+    std::vector<fs::path> inputs = inputFiles(a.scene);
+    if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
+    std::error_code ignored;
+    if (fs::exists(a.output, ignored)) {
+        checkTargets(
+            std::array{a.output / "index.html", a.output / "results.json", a.output / "results.csv", a.run.json},
+            inputs);
+        return;
+    }
+    checkTargets(std::array{a.run.json}, inputs);
+    fs::path folder = fs::absolute(a.output);
+    while (folder.has_relative_path() && !fs::exists(folder, ignored)) folder = folder.parent_path();
+    requireWritable(folder / "index.html");
+}
+
+nlohmann::ordered_json report(const CompareFormFactorsArguments& a, const ReadReport& read, const MeshedScene& scene,
+                              const FormFactorComparison& comparison, double seconds) {
+    nlohmann::ordered_json json;
+    json["scene"] = a.scene.path.string();
+    json["patches"] = scene.mesh.size();
+    json["options"] = sceneOptionsJson(a.scene, read.overrides);
+    json["options"]["patch_length"] = std::isfinite(scene.meshReport.patchLength)
+                                          ? nlohmann::ordered_json(scene.meshReport.patchLength)
+                                          : nlohmann::ordered_json(nullptr);
+    json["options"]["threads"] = threadCount();
+    json["seed"] = a.run.seed;
+    json["seeds"] = a.seeds;
+    json["version"] = LAMBERT_VERSION;
+    json["seconds"] = seconds;
+    json.update(comparisonJson(comparison));
+    return json;
+}
+
+/// All files of the folder, or none.
+void writeFolder(const fs::path& folder, std::vector<FileContent> files) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw SystemError(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+    for (FileContent& file : files) file.path = folder / file.path;
+    writeWholeFiles(files);
+}
+
+ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
+    FormFactorComparisonOptions options;
+    options.ladders = ladders(a);
+    options.reference = parseReference(a.reference);
+    options.seeds = a.seeds;
+    options.seed = a.run.seed;
+    options.threshold = a.threshold;
+    const BakeOptions mesh = bakeOptions(a.transport, a.run);
+    checkPicture(a.picture);
+    checkFolder(a, options);
+    requireGnuplot();
+
+    applyThreads(a.run);
+    TerminalProgress progress(a.run.quiet);
+    const InterruptGuard interrupt(progress);
+    const Stopwatch watch;
+    const ReadResult read = readScene(a.scene, &progress);
+    logReport(a.run, read.report);
+    const MeshedScene scene = meshUnlitScene(read.scene, mesh.mesh, progress);
+    const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
+    logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
+                                       scene.mesh.size())));
+    options.onRun = [&](const std::string& what) { progress.setTitle(what); };
+    const FormFactorComparison comparison = compareFormFactors(scene, options, progress);
+
+    progress.setTitle("page");
+    const nlohmann::ordered_json json = report(a, read.report, scene, comparison, watch.seconds());
+    std::vector<FileContent> files =
+        formFactorPage({a.scene.path.filename().string(),
+                        scene,
+                        comparison,
+                        {{"Seeds", fmt::format("{} per effort, from {}", a.seeds, a.run.seed)},
+                         {"Lambert", fmt::format("version {}, {} threads, {:.0f} s in all", LAMBERT_VERSION,
+                                                 threadCount(), watch.seconds())}},
+                        shot.camera,
+                        {shot.width, shot.height, 3}},
+                       progress);
+    files.push_back({"results.csv", comparisonCsv(comparison, a.run.seed)});
+    files.push_back({"results.json", jsonText(json)});
+    progress.throwIfCancelled();
+    writeFolder(a.output, std::move(files));
+    if (!a.run.json.empty()) writeJson(json, a.run.json);
+    fmt::print("{}", comparisonText(comparison));
+    logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
+    return ExitCode::Ok;
+}
+
+void addFormFactorsCommand(CLI::App& compare, CommandRun& run) {
+    auto arguments = std::make_shared<CompareFormFactorsArguments>();
+    CompareFormFactorsArguments& a = *arguments;
+    CLI::App& command =
+        *compare.add_subcommand("formfactors", "Methods for form factors: error against cost, as a page with plots");
+    addSceneArguments(command, a.scene);
+    command.add_option("-o,--output", a.output, "Folder for index.html, results.json, results.csv and pictures")
+        ->required()
+        ->type_name("DIR")
+        ->group("Comparison");
+    std::vector<std::string> names;
+    for (const ComparedMethod& method : comparedMethods()) names.push_back(method.name);
+    command.add_option("--methods", a.methods, fmt::format("all, or some of {} [all]", fmt::join(names, ",")))
+        ->type_name("A,B,…")
+        ->group("Comparison");
+    command
+        .add_option(
+            "--efforts", a.efforts,
+            "Resolutions or numbers of lines that a method is run with, such as hemicube=32,64; may be repeated")
+        ->type_name("METHOD=E,E,…")
+        ->allow_extra_args(false)
+        ->group("Comparison");
+    command
+        .add_option(
+            "--reference", a.reference,
+            "auto, exact (convex scenes), METHOD:EFFORT or a matrix file; auto: exact, else a great many lines [auto]")
+        ->type_name("REFERENCE")
+        ->group("Comparison");
+    command.add_option("--seeds", a.seeds, "Runs of each method and effort, 1 to 1000 [5]")
+        ->type_name("K")
+        ->check(between(1.0, 1000.0))
+        ->group("Comparison");
+    command
+        .add_option("--threshold", a.threshold,
+                    "Smallest factor that counts in relative errors, 0 to 1 [0.1 / patches]")
+        ->type_name("F")
+        ->check(between(0.0, 1.0))
+        ->group("Comparison");
+    addMeshArguments(command, a.transport);
+    addCameraArguments(command, a.picture);
+    addRunArguments(command, a.run);
+    command.callback([arguments, &run] { run = [arguments] { return compareFormFactors(*arguments); }; });
+}
+
+} // namespace
+
+void addCompareCommand(CLI::App& program, CommandRun& run) {
+    CLI::App& compare = *program.add_subcommand("compare", "Methods against each other");
+    compare.require_subcommand(1);
+    addFormFactorsCommand(compare, run);
+}
+
+} // namespace lambert

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "baking/bake_scene.h"
+#include "core/progress.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+/// A matrix, and the rays that it took.
+struct ComputedMatrix {
+    FormFactorMatrix matrix;
+    std::uint64_t rays = 0;
+};
+
+/// A way to compute form factors with one number that says how much work it puts in.
+struct ComparedMethod {
+    std::string name;           //!< as for --method
+    std::string effortName;     //!< of the number, such as "lines per patch"
+    std::vector<double> ladder; //!< efforts that are compared if no others are asked for, ascending in cost
+    double lowest, highest;     //!< efforts that are allowed
+    double multiple;            //!< of which an effort is a whole multiple; 0: of nothing
+    ComputedMatrix (*compute)(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,
+                              Progress& progress); //!< throws Cancelled
+};
+
+/// All there are.
+std::span<const ComparedMethod> comparedMethods();
+
+/// By name. Throws UsageError that says which there are.
+const ComparedMethod& comparedMethod(std::string_view name);
+
+/// An effort as a text names it. Throws UsageError if the method does not allow it.
+double parseEffort(const ComparedMethod& method, const std::string& text);
+
+} // namespace lambert

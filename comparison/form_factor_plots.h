@@ -1,0 +1,20 @@
+#pragma once
+
+#include "comparison/compare_form_factors.h"
+#include "comparison/plot.h"
+
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// A plot of the comparison, and what is to be said below it.
+struct CaptionedPlot {
+    Plot plot;
+    std::string caption;
+};
+
+/// Errors against costs, and errors against the size of the factors; what nothing is known of is left out.
+std::vector<CaptionedPlot> formFactorPlots(const FormFactorComparison& comparison);
+
+} // namespace lambert
