@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace lambert {
 
@@ -26,23 +27,43 @@ Rgb linearDisplay(const Rgb& srgb) {
             srgbDecoded(static_cast<double>(srgb.z))};
 }
 
-ColourScale::ColourScale(std::span<const float> values, int mostDecades) : lowest_(-1), highest_(0) {
-    float smallest = INFINITY;
-    float largest = 0.0F;
-    for (const float value : values) {
-        if (!(value > 0.0F) || !std::isfinite(value)) continue;
-        smallest = std::min(smallest, value);
-        largest = std::max(largest, value);
-    }
-    if (!(largest > 0.0F)) return;
-    highest_ = static_cast<int>(std::ceil(std::log10(largest)));
-    lowest_ = std::clamp(static_cast<int>(std::floor(std::log10(smallest))), highest_ - mostDecades, highest_ - 1);
+double roundStep(int n) {
+    constexpr std::array kSteps{1.0, 2.0, 5.0};
+    const int decade = n >= 0 ? n / 3 : -((2 - n) / 3);
+    return kSteps[static_cast<std::size_t>(n - 3 * decade)] * std::pow(10.0, decade);
 }
 
-float ColourScale::position(float value) const {
-    if (!(value > 0.0F) || !std::isfinite(value)) return 0.0F;
-    return std::clamp((std::log10(value) - static_cast<float>(lowest_)) / static_cast<float>(highest_ - lowest_), 0.0F,
-                      1.0F);
+int stepBelow(double value) {
+    int n = 3 * static_cast<int>(std::floor(std::log10(value))) - 1;
+    while (roundStep(n + 1) <= value) ++n;
+    return n;
+}
+
+ColourScale::ColourScale(std::span<const float> values, int mostDecades) : lowest_(-3), highest_(0) {
+    std::vector<float> positive;
+    for (const float value : values)
+        if (value > 0.0F && std::isfinite(value)) positive.push_back(value);
+    if (positive.empty()) return;
+    const auto low = positive.begin() + static_cast<std::ptrdiff_t>(positive.size() / 20);
+    std::nth_element(positive.begin(), low, positive.end());
+    const double smallest = static_cast<double>(*low);
+    highest_ = stepBelow(static_cast<double>(*std::max_element(positive.begin(), positive.end()))) + 1;
+    lowest_ = std::clamp(stepBelow(smallest), highest_ - 3 * mostDecades, highest_ - 1);
+}
+
+std::vector<double> ColourScale::ticks() const {
+    const bool isShort = highest_ - lowest_ <= 7;
+    std::vector<double> result;
+    for (int n = lowest_; n <= highest_; ++n) {
+        const int toEnd = std::min(n - lowest_, highest_ - n);
+        if (isShort || toEnd == 0 || (n % 3 == 0 && toEnd >= 2)) result.push_back(roundStep(n));
+    }
+    return result;
+}
+
+float ColourScale::position(double value) const {
+    if (!(value > 0.0) || !std::isfinite(value)) return 0.0F;
+    return static_cast<float>(std::clamp(std::log(value / lowest()) / std::log(highest() / lowest()), 0.0, 1.0));
 }
 
 } // namespace lambert

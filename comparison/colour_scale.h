@@ -15,20 +15,27 @@ Rgb viridis(float t);
 /// An encoded sRGB colour as the linear one that pictures hold.
 Rgb linearDisplay(const Rgb& srgb);
 
-/// Values to colours on a logarithmic scale of whole decades.
+/// The steps of scales and axes: 1, 2, 5, 10, 20, … for n = 0, 1, 2, 3, 4, …, and below 1 for n < 0.
+double roundStep(int n);
+/// The largest n with roundStep(n) <= value, which is positive and finite.
+int stepBelow(double value);
+
+/// Values to colours on a logarithmic scale between two round numbers.
 class ColourScale {
 public:
-    /// From the decade above the largest value, `mostDecades` (>= 1) down at the most, to the decade below the smallest one
-    /// that is above 0; values of which none is positive and finite give one decade below 1.
+    /// From the round number above the largest value down by at most `mostDecades` (>= 1); the lowest twentieth of the values may
+    /// share the last colour. Values of which none is positive and finite give 0.1 to 1.
     ColourScale(std::span<const float> values, int mostDecades);
 
-    int lowest() const { return lowest_; }   //!< as a power of ten
-    int highest() const { return highest_; } //!< the same
-    float position(float value) const;       //!< in [0, 1]; 0 also for 0 and what is not finite
-    Rgb colour(float value) const { return viridis(position(value)); } //!< encoded sRGB
+    double lowest() const { return roundStep(lowest_); }
+    double highest() const { return roundStep(highest_); }
+    /// Round numbers for a bar: its ends, and between them all of a short one or the decades of a long one.
+    std::vector<double> ticks() const;
+    float position(double value) const; //!< in [0, 1]; 0 also for 0 and what is not finite
+    Rgb colour(double value) const { return viridis(position(value)); } //!< encoded sRGB
 
 private:
-    int lowest_, highest_;
+    int lowest_, highest_; ///< steps
 };
 
 } // namespace lambert

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lambert {
 
@@ -103,6 +104,10 @@ private:
             progress_.throwIfCancelled();
         }
         result.systematic = systematicError(matrices, reference_.matrix, result_.threshold);
+        // The reference's own noise is the same for every seed too.
+        if (result.systematic && result_.referenceError)
+            result.systematic = std::sqrt(std::max(0.0, *result.systematic * *result.systematic -
+                                                            *result_.referenceError * *result_.referenceError));
         if (last) of.bySize = errorsBySize(matrices, reference_.matrix);
         return result;
     }

@@ -41,7 +41,7 @@ const Measure& measure(std::string_view key);
 struct EffortResult {
     double effort = 0.0;
     std::vector<RunMeasures> runs;    //!< #seeds
-    std::optional<double> systematic; //!< see systematicError
+    std::optional<double> systematic; //!< see systematicError; without the reference's own error
     MeanDeviation of(const Measure& measure) const;
 };
 

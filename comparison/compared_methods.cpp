@@ -41,9 +41,9 @@ ComputedMatrix localLines(const MeshedScene& s, double effort, std::uint64_t see
 
 std::span<const ComparedMethod> comparedMethods() {
     static const std::vector<ComparedMethod> kMethods{
-        {"hemicube", "resolution", {16, 32, 64, 128}, 16, 4096, 2, hemicube},
-        {"hemisphere", "resolution", {16, 32, 64, 128}, 4, 4096, 4, hemisphere},
-        {"local-lines", "lines per patch", {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines}};
+        {"hemicube", "resolution", false, {16, 32, 64, 128}, 16, 4096, 2, hemicube},
+        {"hemisphere", "resolution", false, {16, 32, 64, 128}, 4, 4096, 4, hemisphere},
+        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines}};
     return kMethods;
 }
 
@@ -54,6 +54,11 @@ const ComparedMethod& comparedMethod(std::string_view name) {
     std::vector<std::string> names;
     for (const ComparedMethod& method : methods) names.push_back(method.name);
     throw UsageError(fmt::format("no method \"{}\": there are {}", name, fmt::join(names, ", ")));
+}
+
+std::string effortText(const ComparedMethod& method, double effort) {
+    return method.numberFirst ? fmt::format("{:.9g} {}", effort, method.effortName)
+                              : fmt::format("{} {:.9g}", method.effortName, effort);
 }
 
 double parseEffort(const ComparedMethod& method, const std::string& text) {

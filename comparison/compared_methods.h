@@ -20,7 +20,8 @@ struct ComputedMatrix {
 /// A way to compute form factors with one number that says how much work it puts in.
 struct ComparedMethod {
     std::string name;           //!< as for --method
-    std::string effortName;     //!< of the number, such as "lines per patch"
+    std::string effortName;     //!< what the number counts, such as "lines per patch"
+    bool numberFirst;           //!< "4096 lines per patch" rather than "resolution 64"
     std::vector<double> ladder; //!< efforts that are compared if no others are asked for, ascending in cost
     double lowest, highest;     //!< efforts that are allowed
     double multiple;            //!< of which an effort is a whole multiple; 0: of nothing
@@ -33,6 +34,9 @@ std::span<const ComparedMethod> comparedMethods();
 
 /// By name. Throws UsageError that says which there are.
 const ComparedMethod& comparedMethod(std::string_view name);
+
+/// "resolution 64", "4096 lines per patch".
+std::string effortText(const ComparedMethod& method, double effort);
 
 /// An effort as a text names it. Throws UsageError if the method does not allow it.
 double parseEffort(const ComparedMethod& method, const std::string& text);

@@ -1,8 +1,8 @@
 #include "comparison/form_factor_page.h"
 
 #include "baking/exposure.h"
+#include "comparison/figure_text.h"
 #include "comparison/form_factor_plots.h"
-#include "comparison/form_factor_report.h"
 #include "comparison/html_page.h"
 #include "comparison/scale_bar.h"
 #include "rendering/render.h"
@@ -19,8 +19,8 @@ namespace lambert {
 
 namespace {
 
-constexpr int kMostDecades = 4; ///< of a false-colour scale
-constexpr std::size_t kMostTargets = 4;
+constexpr int kMostDecades = 3; ///< of a false-colour scale
+constexpr std::size_t kMostTargets = 8;
 
 /// The places of the smallest value, within what is shown of it.
 void markSmallest(std::vector<std::vector<HtmlCell>>& rows, std::size_t column, const std::vector<double>& values) {
@@ -29,18 +29,13 @@ void markSmallest(std::vector<std::vector<HtmlCell>>& rows, std::size_t column, 
         if (std::isfinite(values[k]) && values[k] <= smallest * 1.005) rows[k][column].strong = true;
 }
 
-std::string withDeviation(const MeanDeviation& value, bool percent) {
-    return percent ? percentText(value.mean) + (value.deviation > 0.0 ? " ± " + percentText(value.deviation) : "")
-                   : fmt::format("{:.3g}", value.mean);
-}
-
 class PageBuilder {
 public:
     PageBuilder(const FormFactorPageInput& input, Progress& progress)
         : in_(input), of_(input.comparison), progress_(progress), page_("Form factors of " + input.scene, subtitle()) {}
 
     std::vector<FileContent> operator()() {
-        page_.figureAndTable({picture("scene", scenePicture(), input().scene), sceneCaption()}, facts());
+        page_.figureAndTable({"", picture("scene", scenePicture(), in_.scene), sceneCaption()}, facts());
         summary();
         if (!of_.methods.empty()) costs();
         plots();
@@ -61,8 +56,6 @@ public:
     }
 
 private:
-    const FormFactorPageInput& input() const { return in_; }
-
     std::string subtitle() const {
         std::vector<std::string> names;
         for (const MethodResult& method : in_.comparison.methods) names.push_back(method.method->name);
@@ -127,15 +120,16 @@ private:
         HtmlTable table;
         table.caption =
             fmt::format("At the highest effort that was compared; mean and standard deviation over {} seeds.", seeds());
+        table.dense = true;
         table.head = {"method", "effort", "rays", "CPU s"};
         for (const Measure* m : columns) table.head.emplace_back(m->name);
         table.head.insert(table.head.end(), {"systematic", "slope over rays"});
         for (const MethodResult& method : of_.methods) {
             const EffortResult& last = method.efforts.back();
-            std::vector<HtmlCell> row{
-                method.method->name, fmt::format("{} {:g}", method.method->effortName, last.effort),
-                countText(last.of(measure("rays")).mean), fmt::format("{:.3g}", last.of(measure("cpu_seconds")).mean)};
-            for (const Measure* m : columns) row.emplace_back(withDeviation(last.of(*m), true));
+            std::vector<HtmlCell> row{method.method->name, effortText(*method.method, last.effort),
+                                      countText(last.of(measure("rays")).mean),
+                                      fmt::format("{:.3g}", last.of(measure("cpu_seconds")).mean)};
+            for (const Measure* m : columns) row.emplace_back(percentText(last.of(*m)));
             row.emplace_back(last.systematic ? percentText(*last.systematic) : "–");
             row.emplace_back(slopeText(method.law(measure("rays"), measure("relative_rms"))));
             table.rows.push_back(row);
@@ -156,13 +150,14 @@ private:
         double largest = 0.0;
         for (const MethodResult& method : of_.methods) {
             for (const double value : method.means(error)) {
-                smallest = std::min(smallest, value);
+                if (value > 0.0) smallest = std::min(smallest, value);
                 largest = std::max(largest, value);
             }
         }
         std::vector<double> result;
-        for (const double target : {1.0, 0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6})
-            if (target < largest && target > smallest && result.size() < kMostTargets) result.push_back(target);
+        if (!(smallest > 0.0)) return {};
+        for (int n = stepBelow(largest); roundStep(n) > smallest && result.size() < kMostTargets; --n)
+            result.push_back(roundStep(n));
         return result;
     }
 
@@ -175,7 +170,7 @@ private:
         table.caption = fmt::format("CPU seconds to an error of the {}, between what was measured by power laws.",
                                     of_.lit ? "radiosity" : "factors");
         table.head = {"method"};
-        for (const double target : wanted) table.head.push_back(percentText(target));
+        for (const double target : wanted) table.head.push_back(percentLabel(target));
         std::vector<std::vector<double>> seconds(wanted.size());
         for (const MethodResult& method : of_.methods) {
             std::vector<HtmlCell> row{method.method->name};
@@ -201,7 +196,7 @@ private:
         for (const CaptionedPlot& p : formFactorPlots(of_)) {
             const std::string svg = plotSvg(p.plot, progress_);
             files_.push_back({p.plot.name + ".svg", svg});
-            figures.push_back({svg, p.caption});
+            figures.push_back({p.title, svg, p.caption});
         }
         page_.figures(figures, 2);
     }
@@ -220,15 +215,16 @@ private:
                 patchPicture(in_.meshed.mesh, *in_.meshed.rays, method.*values, scale, in_.camera, in_.size, progress_);
             const std::string title = fmt::format("{} {:g}", method.method->name, method.efforts.back().effort);
             figures.push_back(
-                {picture(name + "_" + method.method->name, image, heading + ": " + title, &scale), title});
+                {title, picture(name + "_" + method.method->name, image, heading + ": " + title, &scale), ""});
         }
         page_.figures(figures, figures.size() < 3 ? 2 : 3);
-        page_.figures({{scaleBarSvg(scale, name), ""}}, 1);
+        page_.figures({{"", scaleBarSvg(scale, name), ""}}, 1);
     }
 
     void details() {
         page_.section("All figures");
         HtmlTable table;
+        table.dense = true;
         table.caption =
             fmt::format("Means over {} seeds. results.csv has every run, results.json the deviations.", seeds());
         table.head = {"method", "effort"};

@@ -1,6 +1,6 @@
 #include "comparison/form_factor_plots.h"
 
-#include "comparison/form_factor_report.h"
+#include "comparison/figure_text.h"
 
 #include <fmt/format.h>
 
@@ -30,13 +30,13 @@ bool isEmpty(const PlotCurve& curve) {
 }
 
 CaptionedPlot errorOverCost(const FormFactorComparison& comparison, const char* error, const char* cost,
-                            const std::string& yLabel, const std::string& xLabel, const std::string& caption) {
+                            const std::string& yLabel) {
     CaptionedPlot result;
+    const bool overRays = cost == std::string("rays");
     result.plot.name = fmt::format("{}_over_{}", error, cost);
-    result.plot.description = yLabel + " against " + xLabel;
-    result.plot.xLabel = xLabel;
-    result.plot.yLabel = yLabel;
-    result.caption = caption;
+    result.plot.x = overRays ? PlotAxis{"rays", countText} : PlotAxis{"CPU seconds", numberLabel};
+    result.plot.y = {yLabel, percentLabel};
+    result.plot.description = fmt::format("{} against {}", measure(error).name, result.plot.x.label);
     int style = 0;
     for (const MethodResult& method : comparison.methods) {
         PlotCurve c = curve(method, style++, measure(cost), measure(error));
@@ -48,13 +48,13 @@ CaptionedPlot errorOverCost(const FormFactorComparison& comparison, const char* 
 /// The part that no other seed would mend.
 CaptionedPlot systematic(const FormFactorComparison& comparison) {
     CaptionedPlot result;
+    result.title = "Systematic error, by rays";
     result.plot.name = "systematic_over_rays";
     result.plot.description = "systematic part of the error against rays";
-    result.plot.xLabel = "rays";
-    result.plot.yLabel = "systematic relative error";
-    result.caption =
-        "The part of the error that is the same for every seed: one point in place of a whole patch, aliasing. "
-        "A method without bias has none but the noise of this estimate.";
+    result.plot.x = {"rays", countText};
+    result.plot.y = {"systematic relative error", percentLabel};
+    result.caption = "The part that is the same for every seed: one point in place of a whole patch, aliasing. "
+                     "A method without bias has none but this estimate's noise; points below that are missing.";
     int style = 0;
     for (const MethodResult& method : comparison.methods) {
         PlotCurve c{method.method->name, {}, style++};
@@ -69,13 +69,13 @@ CaptionedPlot systematic(const FormFactorComparison& comparison) {
 
 CaptionedPlot bySize(const FormFactorComparison& comparison) {
     CaptionedPlot result;
+    result.title = "Error by the size of the factor";
     result.plot.name = "error_by_size";
     result.plot.description = "relative error against the size of the factors";
-    result.plot.xLabel = "size of the factor, by half decades";
-    result.plot.yLabel = "relative RMS error";
+    result.plot.x = {"size of the factor, by half decades", numberLabel};
+    result.plot.y = {"relative RMS error", percentLabel};
     result.caption =
-        "Small factors err most. Each method at its highest effort; beyond its last ray a method gives a small "
-        "factor nothing or far too much.";
+        "Each method at its highest effort. A factor worth less than one ray gets nothing or far too much.";
     int style = 0;
     for (const MethodResult& method : comparison.methods) {
         PlotCurve c{method.method->name, {}, style++};
@@ -91,29 +91,33 @@ CaptionedPlot bySize(const FormFactorComparison& comparison) {
 } // namespace
 
 std::vector<CaptionedPlot> formFactorPlots(const FormFactorComparison& comparison) {
-    std::vector<CaptionedPlot> plots{
-        errorOverCost(comparison, "relative_rms", "rays", "relative RMS error of the factors", "rays",
-                      "Error per factor against rays, over the pairs whose factor is above the threshold."),
-        errorOverCost(comparison, "relative_rms", "cpu_seconds", "relative RMS error of the factors", "CPU seconds",
-                      "The same against processor time: what a ray costs differs between methods.")};
+    const auto plot = [&](const char* error, const char* cost, const std::string& yLabel, const std::string& title,
+                          const std::string& caption) {
+        CaptionedPlot result = errorOverCost(comparison, error, cost, yLabel);
+        result.title = title;
+        result.caption = caption;
+        return result;
+    };
+    std::vector<CaptionedPlot> plots{plot("relative_rms", "rays", "relative RMS error", "Factors, by rays",
+                                          "Over the pairs whose factor is above the threshold."),
+                                     plot("relative_rms", "cpu_seconds", "relative RMS error",
+                                          "Factors, by processor time",
+                                          "What a ray costs differs between the methods.")};
+    if (comparison.referenceError && *comparison.referenceError > 0.0)
+        for (CaptionedPlot& p : plots)
+            p.plot.levels.push_back({"the reference's own error", *comparison.referenceError});
     if (comparison.lit)
-        plots.push_back(errorOverCost(comparison, "radiosity", "cpu_seconds", "relative RMS error of the radiosity",
-                                      "CPU seconds",
-                                      "What matters in the end: the error of the light solved from the matrix."));
-    plots.push_back(
-        errorOverCost(comparison, "misdirected", "cpu_seconds", "share of the light sent astray", "CPU seconds",
-                      "The share of a patch's light that its row takes to a wrong patch, mean over the area."));
+        plots.push_back(plot("radiosity", "cpu_seconds", "relative RMS error", "Radiosity, by processor time",
+                             "What matters in the end: the light solved from the matrix."));
+    plots.push_back(plot("misdirected", "cpu_seconds", "share of the light", "Light sent astray, by processor time",
+                         "What a row takes to a wrong place, mean over the area."));
     plots.push_back(systematic(comparison));
     plots.push_back(bySize(comparison));
     plots.push_back(
-        errorOverCost(comparison, "column_closure", "rays", "closure error of the columns", "rays",
-                      "Identities that need no reference: how far from 1 that is which a patch receives if all "
-                      "surfaces send 1 per m²."));
-    plots.push_back(errorOverCost(comparison, "reciprocity", "rays", "reciprocity error", "rays",
-                                  "And how far A F from one side of a pair is from that of the other."));
-    if (comparison.referenceError && *comparison.referenceError > 0.0)
-        for (std::size_t k : {0U, 1U})
-            plots[k].plot.levels.push_back({"the reference's own error", *comparison.referenceError});
+        plot("column_closure", "rays", "error of a column's sum", "Closure of the columns, by rays",
+             "Needs no reference: how far from 1 that is which a patch receives if all surfaces send 1 per m²."));
+    plots.push_back(plot("reciprocity", "rays", "relative RMS difference", "Reciprocity, by rays",
+                         "Needs none either: how far A F from one side of a pair is from that of the other."));
     std::erase_if(plots, [](const CaptionedPlot& p) { return p.plot.curves.empty(); });
     return plots;
 }

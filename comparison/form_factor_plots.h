@@ -8,8 +8,9 @@
 
 namespace lambert {
 
-/// A plot of the comparison, and what is to be said below it.
+/// A plot of the comparison, and what is to be said of it.
 struct CaptionedPlot {
+    std::string title;
     Plot plot;
     std::string caption;
 };

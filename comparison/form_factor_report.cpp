@@ -1,9 +1,9 @@
 #include "comparison/form_factor_report.h"
 
+#include "comparison/figure_text.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <cmath>
 
 namespace lambert {
 
@@ -103,31 +103,6 @@ std::string comparisonText(const FormFactorComparison& comparison) {
     text += fmt::format("reference: {}, own error {}\n", comparison.reference,
                         comparison.referenceError ? percentText(*comparison.referenceError) : "unknown");
     return text;
-}
-
-std::string percentText(double value) {
-    const double percent = 100.0 * value;
-    const double size = std::abs(percent);
-    if (!std::isfinite(percent)) return "–";
-    if (size < 5e-5) return size < 5e-9 ? "0" : fmt::format("{:.0e} %", percent);
-    const int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : size >= 0.09995 ? 3 : 4;
-    return fmt::format("{:.{}f} %", percent, digits);
-}
-
-std::string countText(double value) {
-    const char* const units[] = {"", " k", " M", " G", " T"};
-    std::size_t unit = 0;
-    while (value >= 999.5 && unit < 4) {
-        value /= 1000.0;
-        ++unit;
-    }
-    return fmt::format("{:.3g}{}", value, units[unit]);
-}
-
-std::string slopeText(const std::optional<PowerLaw>& law) {
-    if (!law) return "–";
-    const std::string slope = fmt::format("{}{:.2f}", law->exponent < 0.0 ? "−" : "", std::abs(law->exponent));
-    return law->exponentError > 0.0 ? fmt::format("{} ± {:.2f}", slope, law->exponentError) : slope;
 }
 
 } // namespace lambert

@@ -17,11 +17,4 @@ std::string comparisonCsv(const FormFactorComparison& comparison, std::uint64_t 
 /// For a terminal: one line per method and effort, means over the seeds.
 std::string comparisonText(const FormFactorComparison& comparison);
 
-/// "1.23 %" or, above 100 %, "12.3": three significant digits at most.
-std::string percentText(double value);
-/// 1234 as "1.23 k" and so on; for counts and bytes.
-std::string countText(double value);
-/// The slope with its standard error: "−0.52 ± 0.01"; "–" if there is none.
-std::string slopeText(const std::optional<PowerLaw>& law);
-
 } // namespace lambert

@@ -16,8 +16,9 @@ body{margin:0;background:var(--ground);color:var(--text);font:15px/1.5 system-ui
 main{max-width:1200px;margin:0 auto;padding:32px 24px 64px}
 h1{font-size:30px;line-height:1.2;margin:0 0 4px;font-weight:650;letter-spacing:-.01em;overflow-wrap:anywhere}
 h2{font-size:20px;line-height:1.3;margin:44px 0 10px;padding-top:14px;border-top:1px solid var(--line);font-weight:650}
+h3{font-size:15px;line-height:1.3;margin:0 0 6px;font-weight:650}
 p{margin:0 0 12px;max-width:82ch}
-.subtitle{color:var(--soft);margin:0 0 24px;font-size:16px}
+.subtitle{max-width:none;color:var(--soft);margin:0 0 24px;font-size:16px}
 figure{margin:0;min-width:0}
 figcaption,caption{color:var(--soft);font-size:13.5px;line-height:1.45;text-align:left}
 figcaption{margin-top:6px}
@@ -28,10 +29,16 @@ svg.plot text{font-family:inherit}
 .grid{display:grid;gap:26px 28px;margin:14px 0 8px;align-items:start}
 .beside{display:grid;grid-template-columns:minmax(0,5fr) minmax(0,7fr);gap:32px;align-items:start}
 .wide{overflow-x:auto;margin:10px 0 14px}
-table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;width:100%}
+table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;min-width:min(100%,640px)}
+.facts{width:100%}
 th,td{padding:5px 10px;text-align:right;border-bottom:1px solid var(--line);vertical-align:baseline}
+td{white-space:nowrap}
+.facts td{white-space:normal}
 th:first-child,td:first-child{text-align:left;padding-left:0;white-space:nowrap}
 th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-height:1.3}
+.dense{font-size:13px;width:100%}
+.dense th,.dense td{padding:5px 7px}
+.dense th{font-size:12px}
 .facts td{text-align:left;overflow-wrap:anywhere}
 .facts td:first-child{color:var(--soft);width:11em}
 tr.rule td{padding:0;border-bottom:2px solid var(--line)}
@@ -68,7 +75,11 @@ std::string tableMarkup(const HtmlTable& table, std::string_view style) {
 }
 
 std::string figureMarkup(const HtmlFigure& figure) {
-    return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", figure.content, htmlEscaped(figure.caption));
+    std::string text = "<figure>";
+    if (!figure.title.empty()) text += fmt::format("<h3>{}</h3>", htmlEscaped(figure.title));
+    text += figure.content;
+    if (!figure.caption.empty()) text += fmt::format("<figcaption>{}</figcaption>", htmlEscaped(figure.caption));
+    return text + "</figure>\n";
 }
 
 } // namespace
@@ -81,7 +92,7 @@ void HtmlPage::section(std::string_view heading) { body_ += fmt::format("<h2>{}<
 
 void HtmlPage::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", htmlEscaped(text)); }
 
-void HtmlPage::table(const HtmlTable& table) { body_ += tableMarkup(table, ""); }
+void HtmlPage::table(const HtmlTable& table) { body_ += tableMarkup(table, table.dense ? " class=\"dense\"" : ""); }
 
 void HtmlPage::figures(const std::vector<HtmlFigure>& figures, int columns) {
     body_ += fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},minmax(0,1fr))\">\n", columns);

@@ -18,12 +18,14 @@ struct HtmlTable {
     std::string caption;
     std::vector<std::string> head;           //!< #columns
     std::vector<std::vector<HtmlCell>> rows; //!< #columns each; an empty row is a rule
+    bool dense = false;                      //!< smaller, for many columns
 };
 
-/// Something to look at. `content` is markup: an `<svg>` or `<img>` element.
+/// Something to look at.
 struct HtmlFigure {
-    std::string content;
-    std::string caption; //!< plain text
+    std::string title;   //!< above it, plain text; or empty
+    std::string content; //!< markup: an `<svg>` or `<img>` element
+    std::string caption; //!< below it, plain text; or empty
 };
 
 /// A page that is one file: no script, no link to anything outside, light or dark as the reader's system is, fit for a window of

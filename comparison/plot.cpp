@@ -1,12 +1,15 @@
 #include "comparison/plot.h"
 
+#include "comparison/colour_scale.h"
 #include "comparison/gnuplot.h"
 #include "comparison/html.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 namespace lambert {
@@ -14,7 +17,7 @@ namespace lambert {
 namespace {
 
 /// gnuplot's string in double quotes: for a label of any characters.
-std::string quoted(std::string_view text) {
+std::string gnuplotString(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';
@@ -28,8 +31,14 @@ void replaceAll(std::string& text, std::string_view from, std::string_view to) {
         text.replace(at, from.size(), to);
 }
 
+/// Labels of ticks are formats to gnuplot.
+std::string doubledPercent(std::string text) {
+    for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 2)) text.insert(at, 1, '%');
+    return text;
+}
+
 /// The `<svg>` element alone, see plotSvg.
-std::string embedded(std::string svg, const Plot& plot) {
+std::string embedded(std::string svg, const Plot& plot, int height) {
     const std::size_t begin = svg.find("<svg");
     const std::size_t end = svg.find("<g id=\"gnuplot_canvas\"");
     if (begin == std::string::npos || end == std::string::npos || svg.find("</svg>") == std::string::npos)
@@ -37,7 +46,7 @@ std::string embedded(std::string svg, const Plot& plot) {
     std::string head =
         fmt::format("<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" "
                     "xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n",
-                    htmlEscaped(plot.description), plot.width, plot.height);
+                    htmlEscaped(plot.description), plot.width, height);
     svg = head + svg.substr(end);
     for (const char* quote : {"'", "\""}) {
         for (const char* attribute : {"fill", "stroke", "color"})
@@ -52,21 +61,59 @@ std::string embedded(std::string svg, const Plot& plot) {
     return svg;
 }
 
+constexpr int kHeight = 360, kLegendLine = 20; ///< of a plot in units of the SVG, without and for a line of its legend
+
 /// Marks of gnuplot's SVG terminal that are told apart even without colour: disc, square, triangle, diamond, …
 constexpr std::array kMarks{7, 5, 9, 13, 11, 6, 4};
 
-std::string dataBlocks(const Plot& plot) {
+/// What is drawn on an axis.
+struct Range {
+    double lowest = INFINITY, highest = 0.0;
+    void add(double value) {
+        if (!(value > 0.0) || !std::isfinite(value)) return;
+        lowest = std::min(lowest, value);
+        highest = std::max(highest, value);
+    }
+};
+
+bool isDrawn(const PlotCurve::Point& p) { return p.x > 0.0 && p.y > 0.0 && std::isfinite(p.x) && std::isfinite(p.y); }
+
+/// The curves' points; and what the axes have to hold.
+std::string dataBlocks(const Plot& plot, Range& x, Range& y) {
     std::string text;
     for (std::size_t k = 0; k < plot.curves.size(); ++k) {
         text += fmt::format("$curve{} << EOD\n", k);
         for (const PlotCurve::Point& p : plot.curves[k].points) {
-            // A bar that would reach below 0 ends within the plot's decade.
-            const double lower = p.lower > 0.0 ? p.lower : 0.1 * p.y;
-            if (p.x > 0.0 && p.y > 0.0) text += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", p.x, p.y, lower, p.upper);
+            if (!isDrawn(p)) continue;
+            const double lower = std::max(p.lower, 0.1 * p.y); // a bar may reach below 0, which no axis holds
+            x.add(p.x);
+            for (const double value : {lower, p.y, p.upper}) y.add(value);
+            text += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", p.x, p.y, lower, p.upper);
         }
         text += "EOD\n";
     }
+    for (const PlotLevel& level : plot.levels)
+        if (level.y > 0.1 * y.lowest) y.add(level.y);
     return text;
+}
+
+/// The axis a little longer than what is drawn, with labels at decades, or on a short one at 2 and 5 as well.
+std::string axisScript(char axis, const PlotAxis& of, const Range& range) {
+    const double margin = std::max(1.15, std::pow(range.highest / range.lowest, 0.04));
+    const double lowest = range.lowest / margin;
+    const double highest = range.highest * margin;
+    const double decades = std::log10(highest / lowest);
+    std::vector<std::string> ticks;
+    for (int n = stepBelow(lowest); roundStep(n) <= highest; ++n) {
+        if (roundStep(n) < lowest) continue;
+        const bool labelled = n % 3 == 0 ? decades < 7.0 || n % 6 == 0 : decades < 1.7;
+        if (labelled || decades < 4.0)
+            ticks.push_back(fmt::format("{} {:.9g} {}",
+                                        gnuplotString(labelled ? doubledPercent(of.text(roundStep(n))) : ""),
+                                        roundStep(n), labelled ? 0 : 1));
+    }
+    return fmt::format("set {0}range [{1:.9g}:{2:.9g}]\nset {0}tics ({3})\nset {0}label {4} noenhanced\n", axis, lowest,
+                       highest, fmt::join(ticks, ", "), gnuplotString(of.label));
 }
 
 } // namespace
@@ -77,30 +124,31 @@ std::string plotColour(int style) {
 }
 
 std::string plotSvg(const Plot& plot, const Progress& progress) {
-    std::string script = fmt::format(
-        "set terminal svg size {},{} dynamic enhanced font \"sans-serif,13\" linewidth 1.3 name {}\n"
-        "set encoding utf8\nset logscale xy\nset format \"10^{{%T}}\"\nset grid lt 1 lc rgb \"gray\" lw 0.4\n"
-        "set border 3\nset tics nomirror out scale 0.8\nset mxtics 10\nset mytics 10\n"
-        "set key bottom left Left reverse noenhanced samplen 2 spacing 1.15 width 1\n"
-        "set bars 0.6\nset offsets 0, 0, 0, 0\nset lmargin 9\n",
-        plot.width, plot.height, quoted(plot.name));
-    script += fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced offset 0.5,0\n", quoted(plot.xLabel),
-                          quoted(plot.yLabel));
-    script += dataBlocks(plot);
+    const auto legend = static_cast<int>(plot.curves.size() + plot.levels.size());
+    const int height = kHeight + kLegendLine * legend;
+    Range x, y;
+    const std::string data = dataBlocks(plot, x, y);
+    std::string script =
+        fmt::format("set terminal svg size {},{} dynamic enhanced font \"sans-serif,13\" linewidth 1.3 name {}\n"
+                    "set encoding utf8\nset logscale xy\nset grid lt 1 lc rgb \"gray\" lw 0.35\n"
+                    "set border 3 lw 0.8\nset tics nomirror out scale 0.7,0.4\n"
+                    "set key tmargin left vertical maxcols 1 Left reverse noenhanced samplen 2 spacing 1.2\n",
+                    plot.width, height, gnuplotString(plot.name));
+    script += axisScript('x', plot.x, x) + axisScript('y', plot.y, y) + data;
     std::vector<std::string> parts;
     for (std::size_t k = 0; k < plot.curves.size(); ++k) {
         const PlotCurve& curve = plot.curves[k];
-        const std::string look = fmt::format("lc rgb {} lw 1.4", quoted(plotColour(curve.style)));
-        parts.push_back(fmt::format("$curve{0} using 1:2:3:4 with yerrorbars {1} pt 0 notitle", k, look));
+        const std::string look = fmt::format("lc rgb {} lw 1.4", gnuplotString(plotColour(curve.style)));
+        parts.push_back(fmt::format("$curve{0} using 1:3:(0):($4-$3) with vectors nohead {1} notitle", k, look));
         parts.push_back(fmt::format("$curve{} using 1:2 with linespoints {} pt {} ps 0.7 title {}", k, look,
                                     kMarks[static_cast<std::size_t>(curve.style) % kMarks.size()],
-                                    quoted(curve.label)));
+                                    gnuplotString(curve.label)));
     }
     for (const PlotLevel& level : plot.levels)
         parts.push_back(
-            fmt::format("{:.9g} with lines dt 2 lw 1 lc rgb \"gray50\" title {}", level.y, quoted(level.label)));
+            fmt::format("{:.9g} with lines dt 2 lw 1 lc rgb \"gray50\" title {}", level.y, gnuplotString(level.label)));
     script += fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
-    return embedded(runGnuplot(script, progress), plot);
+    return embedded(runGnuplot(script, progress), plot, height);
 }
 
 } // namespace lambert

@@ -24,16 +24,22 @@ struct PlotLevel {
     double y = 0.0;
 };
 
+/// A logarithmic axis. `text` labels its round numbers.
+struct PlotAxis {
+    std::string label;
+    std::string (*text)(double);
+};
+
 struct Plot {
     std::string name;        //!< letters, digits and underscores; unlike all others of a page
     std::string description; //!< for who cannot see it
-    std::string xLabel, yLabel;
+    PlotAxis x, y;
     std::vector<PlotCurve> curves;
     std::vector<PlotLevel> levels;
-    int width = 600, height = 440; //!< in units of the SVG
+    int width = 600; //!< in units of the SVG; the height follows from the legend
 };
 
-/// The plot as an `<svg>` element for a page: transparent, texts and axes in the colour of the text around it, all ids
+/// The plot, which has at least one point to be drawn, as an `<svg>` element for a page: transparent, texts and axes in the colour of the text around it, all ids
 /// beginning with the plot's name. Throws as runGnuplot.
 std::string plotSvg(const Plot& plot, const Progress& progress);
 

@@ -58,7 +58,7 @@ ReferenceMatrix byMethod(const ComparedMethod& method, double effort, const Mesh
     const FormFactorMatrix first = half(0);
     const FormFactorMatrix second = half(1);
     ReferenceMatrix result{
-        fmt::format("{}, {} {:.9g}, mean of two", method.name, method.effortName, effort), mean(first, second), {}};
+        fmt::format("{}, {}, mean of two", method.name, effortText(method, effort)), mean(first, second), {}};
     // Of two independent halves with errors e and f the mean errs by (e + f) / 2 and is (e − f) / 2 away from them: as much.
     const FormFactorErrors errors = formFactorErrors(first, result.matrix, scene.mesh.area, threshold);
     result.ownError = errors.relativeRms;

@@ -1,9 +1,12 @@
 #include "comparison/scale_bar.h"
 
+#include "comparison/figure_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace lambert {
 
@@ -13,7 +16,7 @@ constexpr int kGlyphWidth = 5, kGlyphHeight = 7, kGlyphScale = 2;
 
 /// Five pixels by seven, a row after the other, the leftmost in the highest of five bits.
 const std::array<unsigned char, kGlyphHeight>& glyph(char c) {
-    static constexpr std::array<std::array<unsigned char, kGlyphHeight>, 12> kGlyphs{{
+    static constexpr std::array<std::array<unsigned char, kGlyphHeight>, 15> kGlyphs{{
         {0x0E, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0E}, // 0
         {0x04, 0x0C, 0x04, 0x04, 0x04, 0x04, 0x0E}, // 1
         {0x0E, 0x11, 0x01, 0x02, 0x04, 0x08, 0x1F}, // 2
@@ -26,9 +29,12 @@ const std::array<unsigned char, kGlyphHeight>& glyph(char c) {
         {0x0E, 0x11, 0x11, 0x0F, 0x01, 0x02, 0x0C}, // 9
         {0x00, 0x00, 0x0E, 0x11, 0x1F, 0x10, 0x0E}, // e
         {0x00, 0x00, 0x00, 0x1F, 0x00, 0x00, 0x00}, // -
+        {0x00, 0x00, 0x00, 0x00, 0x00, 0x0C, 0x0C}, // .
+        {0x19, 0x19, 0x02, 0x04, 0x08, 0x13, 0x13}, // %
+        {},                                         // blank
     }};
-    if (c >= '0' && c <= '9') return kGlyphs[static_cast<std::size_t>(c - '0')];
-    return kGlyphs[c == 'e' ? 10 : 11];
+    const std::size_t place = std::string_view("0123456789e-.% ").find(c);
+    return kGlyphs[std::min(place, kGlyphs.size() - 1)];
 }
 
 int textWidth(const std::string& text) { return static_cast<int>(text.size()) * (kGlyphWidth + 1) * kGlyphScale; }
@@ -63,11 +69,10 @@ Image withScaleBar(const Image& picture, const ColourScale& scale) {
         const float t = static_cast<float>(x - left) / static_cast<float>(std::max(1, right - left));
         for (int y = top; y < top + kBar; ++y) image.at(x, y) = linearDisplay(viridis(t));
     }
-    const int decades = scale.highest() - scale.lowest();
-    for (int k = 0; k <= decades; ++k) {
-        const int x = left + (right - left) * k / decades;
+    for (const double tick : scale.ticks()) {
+        const int x = left + static_cast<int>(static_cast<float>(right - left) * scale.position(tick));
         for (int y = top + kBar; y < top + kBar + kTick; ++y) image.at(x, y) = Rgb(0.0F);
-        const std::string label = fmt::format("1e{}", scale.lowest() + k);
+        const std::string label = percentLabel(tick);
         drawText(image, label, x - textWidth(label) / 2, top + kBar + kTick + kGap);
     }
     return image;
@@ -76,9 +81,9 @@ Image withScaleBar(const Image& picture, const ColourScale& scale) {
 std::string scaleBarSvg(const ColourScale& scale, const std::string& name) {
     constexpr int kWidth = 720, kHeight = 50, kBar = 16, kMargin = 40;
     std::string svg = fmt::format(
-        "<svg class=\"plot\" role=\"img\" aria-label=\"colours from 1e{} to 1e{}\" viewBox=\"0 0 {} {}\" "
+        "<svg class=\"plot\" role=\"img\" aria-label=\"colours from {} to {}\" viewBox=\"0 0 {} {}\" "
         "style=\"max-width:{}px\" xmlns=\"http://www.w3.org/2000/svg\">\n<defs><linearGradient id=\"{}_scale\">",
-        scale.lowest(), scale.highest(), kWidth, kHeight, kWidth, name);
+        percentLabel(scale.lowest()), percentLabel(scale.highest()), kWidth, kHeight, kWidth, name);
     for (int k = 0; k <= kStops; ++k) {
         const float t = static_cast<float>(k) / kStops;
         const Rgb c = 255.0F * viridis(t) + 0.5F;
@@ -88,13 +93,12 @@ std::string scaleBarSvg(const ColourScale& scale, const std::string& name) {
     svg += fmt::format(
         "</linearGradient></defs>\n<rect x=\"{0}\" y=\"2\" width=\"{1}\" height=\"{2}\" fill=\"url(#{3}_scale)\"/>\n",
         kMargin, kWidth - 2 * kMargin, kBar, name);
-    const int decades = scale.highest() - scale.lowest();
-    for (int k = 0; k <= decades; ++k) {
-        const int x = kMargin + (kWidth - 2 * kMargin) * k / decades;
+    for (const double tick : scale.ticks()) {
+        const int x = kMargin + static_cast<int>(static_cast<float>(kWidth - 2 * kMargin) * scale.position(tick));
         svg += fmt::format(
             "<path d=\"M{0} {1}v6\" stroke=\"currentColor\"/><text x=\"{0}\" y=\"{2}\" text-anchor=\"middle\" "
-            "font-size=\"14\" fill=\"currentColor\">10<tspan dy=\"-5\" font-size=\"10\">{3}</tspan></text>\n",
-            x, 2 + kBar, kBar + 26, scale.lowest() + k);
+            "font-size=\"13\" fill=\"currentColor\">{3}</text>\n",
+            x, 2 + kBar, kBar + 24, percentLabel(tick));
     }
     return svg + "</svg>";
 }
