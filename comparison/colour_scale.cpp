@@ -10,9 +10,10 @@
 namespace lambert {
 
 Rgb viridis(float t) {
-    // Every ninth of the map.
-    constexpr std::array<std::uint32_t, 10> kColours{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,
-                                                     0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
+    // Every nineteenth of the map.
+    constexpr std::array<std::uint32_t, 20> kColours{
+        0x440154, 0x481567, 0x482677, 0x453781, 0x404788, 0x39568C, 0x33638D, 0x2D708E, 0x287D8E, 0x238A8D,
+        0x1F968B, 0x20A387, 0x29AF7F, 0x3CBB75, 0x55C667, 0x73D055, 0x95D840, 0xB8DE29, 0xDCE319, 0xFDE725};
     const auto colour = [&](std::size_t k) {
         return Rgb((kColours[k] >> 16) & 0xFFU, (kColours[k] >> 8) & 0xFFU, kColours[k] & 0xFFU) / 255.0F;
     };

@@ -39,6 +39,7 @@ th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-h
 .dense{font-size:13px;width:100%}
 .dense th,.dense td{padding:5px 7px}
 .dense th{font-size:12px}
+.dense td:first-child,.dense th:first-child{padding-left:0}
 .facts td{text-align:left;overflow-wrap:anywhere}
 .facts td:first-child{color:var(--soft);width:11em}
 tr.rule td{padding:0;border-bottom:2px solid var(--line)}

@@ -51,8 +51,7 @@ void drawText(Image& image, const std::string& text, int left, int top) {
     }
 }
 
-/// The map's colours, as many as blend without being seen to.
-constexpr int kStops = 18;
+constexpr int kStops = 19; ///< between which the map is linear
 
 } // namespace
 
