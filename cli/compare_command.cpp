@@ -157,8 +157,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
                         scene,
                         comparison,
                         {{"Seeds", fmt::format("{} per effort, from {}", a.seeds, a.run.seed)},
-                         {"Lambert", fmt::format("version {}, {} threads, {:.0f} s in all", LAMBERT_VERSION,
-                                                 threadCount(), watch.seconds())}},
+                         {"Lambert", fmt::format("version {}, {} threads", LAMBERT_VERSION, threadCount())}},
                         shot.camera,
                         {shot.width, shot.height, 3}},
                        progress);

@@ -49,8 +49,8 @@ constexpr std::array kErrors{
 
 constexpr std::array kCosts{
     Measure{"rays", "rays", "Rays or lines traced.", &RunMeasures::rays},
-    Measure{"cpu_seconds", "CPU s", "Processor time of the matrix, all threads.", &RunMeasures::processorSeconds},
-    Measure{"wall_seconds", "wall s", "Time on the clock of the matrix.", &RunMeasures::wallSeconds},
+    Measure{"cpu_seconds", "CPU s", "Processor time of the matrix, all threads.", &RunMeasures::processorSeconds},
+    Measure{"wall_seconds", "wall s", "Time on the clock of the matrix.", &RunMeasures::wallSeconds},
     Measure{"bytes", "bytes", "Memory that the matrix takes.", &RunMeasures::bytes}};
 
 /// One comparison on its way.

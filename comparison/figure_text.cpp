@@ -22,7 +22,7 @@ std::string percentText(double value) {
     const double percent = 100.0 * value;
     if (!std::isfinite(percent)) return "–";
     if (isTiny(percent)) return std::abs(percent) < 5e-9 ? "0" : fmt::format("{:.0e} %", percent);
-    return fmt::format("{:.{}f} %", percent, decimals(percent));
+    return fmt::format("{}{:.{}f} %", percent < 0.0 ? "−" : "", std::abs(percent), decimals(percent));
 }
 
 std::string percentText(const MeanDeviation& value) {
@@ -31,7 +31,8 @@ std::string percentText(const MeanDeviation& value) {
     // As many decimals as show the deviation.
     int digits = decimals(mean);
     while (digits < 4 && 100.0 * value.deviation < 0.5 * std::pow(10.0, -digits)) ++digits;
-    return fmt::format("{0:.{2}f} ± {1:.{2}f} %", mean, 100.0 * value.deviation, digits);
+    return fmt::format("{3}{0:.{2}f} ± {1:.{2}f} %", std::abs(mean), 100.0 * value.deviation, digits,
+                       mean < 0.0 ? "−" : "");
 }
 
 std::string percentLabel(double value) { return fmt::format("{:g} %", 100.0 * value); }

@@ -121,7 +121,7 @@ private:
         table.caption =
             fmt::format("At the highest effort that was compared; mean and standard deviation over {} seeds.", seeds());
         table.dense = true;
-        table.head = {"method", "effort", "rays", "CPU s"};
+        table.head = {"method", "effort", measure("rays").name, measure("cpu_seconds").name};
         for (const Measure* m : columns) table.head.emplace_back(m->name);
         table.head.insert(table.head.end(), {"systematic", "slope over rays"});
         for (const MethodResult& method : of_.methods) {

@@ -123,6 +123,7 @@ TEST(FigureText, ThreeDigitsAndUnits) {
     EXPECT_EQ(percentText(0.123456), "12.3 %");
     EXPECT_EQ(percentText(0.00012345), "0.0123 %");
     EXPECT_EQ(percentText(12.3), "1230 %");
+    EXPECT_EQ(percentText(-0.0123), "−1.23 %");
     EXPECT_EQ(percentText(0.0), "0");
     EXPECT_EQ(percentText(MeanDeviation{0.238, 0.002}), "23.8 ± 0.2 %");
     EXPECT_EQ(percentText(MeanDeviation{0.1418, 0.0002}), "14.18 ± 0.02 %");
