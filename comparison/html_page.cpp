@@ -9,8 +9,8 @@ namespace lambert {
 namespace {
 
 constexpr std::string_view kStyle = R"(
-:root{color-scheme:light dark;--text:#1d2229;--soft:#5a6472;--line:#d5dae1;--ground:#fff;--raised:#f5f7f9;--strong:#0a5f3c}
-@media(prefers-color-scheme:dark){:root{--text:#e4e7eb;--soft:#9aa4b1;--line:#363d47;--ground:#15181d;--raised:#1d2229;--strong:#6fd6a6}}
+:root{color-scheme:light dark;--text:#1d2229;--soft:#5a6472;--line:#d5dae1;--ground:#fff;--strong:#0a5f3c}
+@media(prefers-color-scheme:dark){:root{--text:#e4e7eb;--soft:#9aa4b1;--line:#363d47;--ground:#15181d;--strong:#6fd6a6}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--ground);color:var(--text);font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue","Noto Sans","Liberation Sans",Arial,sans-serif}
 main{max-width:1200px;margin:0 auto;padding:32px 24px 64px}
@@ -47,10 +47,9 @@ td.strong{color:var(--strong);font-weight:650}
 dl{display:grid;grid-template-columns:13em 1fr;gap:7px 20px;margin:0}
 dt{font-weight:600}
 dd{margin:0}
-summary{cursor:pointer;color:var(--soft);margin:8px 0}
-@media(max-width:820px){.beside,.grid{grid-template-columns:1fr!important}dl{grid-template-columns:1fr}}
+@media screen and (max-width:820px){.beside,.grid{grid-template-columns:1fr!important}dl{grid-template-columns:1fr}}
 @media print{:root{color-scheme:light;--text:#000;--soft:#444;--line:#bbb;--ground:#fff}body{font-size:10.5pt}main{max-width:none;padding:0}
-figure,tr,dl>*{break-inside:avoid}h2{break-after:avoid}table{font-size:9pt}}
+figure,tr,dl>*{break-inside:avoid}h2{break-after:avoid}table{font-size:9pt}.wide{overflow:visible}.dense{font-size:7pt}.dense th{font-size:6.5pt}.dense th,.dense td{padding:2px 3px}h2+p{break-after:avoid}@page{margin:13mm}}
 )";
 
 std::string tableMarkup(const HtmlTable& table, std::string_view style) {
@@ -111,11 +110,6 @@ void HtmlPage::definitions(const std::vector<Definition>& definitions) {
     for (const Definition& d : definitions)
         body_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", htmlEscaped(d.term), htmlEscaped(d.meaning));
     body_ += "</dl>\n";
-}
-
-void HtmlPage::foldedTable(std::string_view summary, const HtmlTable& table) {
-    body_ +=
-        fmt::format("<details><summary>{}</summary>\n{}</details>\n", htmlEscaped(summary), tableMarkup(table, ""));
 }
 
 std::string HtmlPage::text() const {

@@ -45,8 +45,6 @@ public:
         std::string term, meaning;
     };
     void definitions(const std::vector<Definition>& definitions);
-    /// A part that is closed until the reader opens it.
-    void foldedTable(std::string_view summary, const HtmlTable& table);
 
     std::string text() const; //!< the whole file, UTF-8
 

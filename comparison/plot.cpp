@@ -116,12 +116,13 @@ std::string axisScript(char axis, const PlotAxis& of, const Range& range) {
                        highest, fmt::join(ticks, ", "), gnuplotString(of.label));
 }
 
-} // namespace
-
+/// The colour of a style: told apart by the colour-blind, on white and on black.
 std::string plotColour(int style) {
     constexpr std::array kColours{"#2f7ed8", "#e07b1a", "#169f78", "#c8509b", "#8f7a10", "#7a6ad8", "#d04545"};
     return kColours[static_cast<std::size_t>(style) % kColours.size()];
 }
+
+} // namespace
 
 std::string plotSvg(const Plot& plot, const Progress& progress) {
     const auto legend = static_cast<int>(plot.curves.size() + plot.levels.size());

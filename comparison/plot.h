@@ -43,7 +43,4 @@ struct Plot {
 /// beginning with the plot's name. Throws as runGnuplot.
 std::string plotSvg(const Plot& plot, const Progress& progress);
 
-/// The colour of a style, as #rrggbb: told apart by the colour-blind, on white and on black.
-std::string plotColour(int style);
-
 } // namespace lambert
