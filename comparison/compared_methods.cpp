@@ -1,6 +1,7 @@
 #include "comparison/compared_methods.h"
 
 #include "core/error.h"
+#include "formfactors/global_lines.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/hemisphere.h"
 #include "formfactors/local_lines.h"
@@ -37,13 +38,21 @@ ComputedMatrix localLines(const MeshedScene& s, double effort, std::uint64_t see
                    progress);
 }
 
+ComputedMatrix globalLines(const MeshedScene& s, double effort, std::uint64_t seed, MatrixStorage storage,
+                           Progress& progress) {
+    const LineCaster caster(*s.scene);
+    const GlobalLines lines(s.mesh, caster, {.lines = static_cast<std::uint32_t>(effort), .seed = seed});
+    return {lines.matrix(storage, progress), static_cast<std::uint64_t>(effort)};
+}
+
 } // namespace
 
 std::span<const ComparedMethod> comparedMethods() {
     static const std::vector<ComparedMethod> kMethods{
         {"hemicube", "resolution", false, {16, 32, 64, 128}, 16, 4096, 2, hemicube},
         {"hemisphere", "resolution", false, {16, 32, 64, 128}, 4, 4096, 4, hemisphere},
-        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines}};
+        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines},
+        {"global-lines", "lines in all", true, {1 << 18, 1 << 20, 1 << 22, 1 << 24}, 1, 4294967295.0, 1, globalLines}};
     return kMethods;
 }
 
