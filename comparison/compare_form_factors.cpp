@@ -89,7 +89,7 @@ private:
         result.effort = effort;
         std::vector<FormFactorMatrix> matrices;
         for (int k = 0; k < options_.seeds; ++k) {
-            tell(fmt::format("{} {:g}, seed {} of {}", of.method->name, effort, k + 1, options_.seeds));
+            tell(fmt::format("{} {}, seed {} of {}", of.method->name, effortNumber(effort), k + 1, options_.seeds));
             RunMeasures& run = result.runs.emplace_back();
             const Stopwatch watch;
             const double start = processorSeconds();

@@ -1,5 +1,6 @@
 #include "comparison/compared_methods.h"
 
+#include "comparison/figure_text.h"
 #include "core/error.h"
 #include "formfactors/global_lines.h"
 #include "formfactors/hemicube.h"
@@ -52,7 +53,7 @@ std::span<const ComparedMethod> comparedMethods() {
         {"hemicube", "resolution", false, {16, 32, 64, 128}, 16, 4096, 2, hemicube},
         {"hemisphere", "resolution", false, {16, 32, 64, 128}, 4, 4096, 4, hemisphere},
         {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines},
-        {"global-lines", "lines in all", true, {1 << 18, 1 << 20, 1 << 22, 1 << 24}, 1, 4294967295.0, 1, globalLines}};
+        {"global-lines", "lines in all", true, {250e3, 1e6, 4e6, 16e6}, 1, 4294967295.0, 1, globalLines}};
     return kMethods;
 }
 
@@ -65,9 +66,11 @@ const ComparedMethod& comparedMethod(std::string_view name) {
     throw UsageError(fmt::format("no method \"{}\": there are {}", name, fmt::join(names, ", ")));
 }
 
+std::string effortNumber(double effort) { return effort < 1e6 ? fmt::format("{:.9g}", effort) : countText(effort); }
+
 std::string effortText(const ComparedMethod& method, double effort) {
-    return method.numberFirst ? fmt::format("{:.9g} {}", effort, method.effortName)
-                              : fmt::format("{} {:.9g}", method.effortName, effort);
+    return method.numberFirst ? fmt::format("{} {}", effortNumber(effort), method.effortName)
+                              : fmt::format("{} {}", method.effortName, effortNumber(effort));
 }
 
 double parseEffort(const ComparedMethod& method, const std::string& text) {

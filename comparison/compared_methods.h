@@ -35,6 +35,8 @@ std::span<const ComparedMethod> comparedMethods();
 /// By name. Throws UsageError that says which there are.
 const ComparedMethod& comparedMethod(std::string_view name);
 
+/// An effort as a number: "64", "16 M".
+std::string effortNumber(double effort);
 /// "resolution 64", "4096 lines per patch".
 std::string effortText(const ComparedMethod& method, double effort);
 

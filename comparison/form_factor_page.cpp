@@ -186,7 +186,11 @@ private:
             }
             table.rows.push_back(row);
         }
-        for (std::size_t t = 0; t < wanted.size(); ++t) markSmallest(table.rows, t + 1, seconds[t]);
+        // Who is below a target at once may need anything from nothing to its first cost: then none is known to be cheapest.
+        for (std::size_t t = 0; t < wanted.size(); ++t)
+            if (std::none_of(of_.methods.begin(), of_.methods.end(),
+                             [&](const MethodResult& m) { return m.means(error).front() <= wanted[t]; }))
+                markSmallest(table.rows, t + 1, seconds[t]);
         page_.table(table);
     }
 
@@ -213,11 +217,13 @@ private:
         for (const MethodResult& method : of_.methods) {
             const Image image =
                 patchPicture(in_.meshed.mesh, *in_.meshed.rays, method.*values, scale, in_.camera, in_.size, progress_);
-            const std::string title = fmt::format("{} {:g}", method.method->name, method.efforts.back().effort);
+            const std::string title =
+                fmt::format("{} {}", method.method->name, effortNumber(method.efforts.back().effort));
             figures.push_back(
                 {title, picture(name + "_" + method.method->name, image, heading + ": " + title, &scale), ""});
         }
-        page_.figures(figures, figures.size() < 3 ? 2 : 3);
+        const std::size_t count = figures.size();
+        page_.figures(figures, count == 4 ? 4 : count < 3 ? 2 : 3);
         page_.figures({{"", scaleBarSvg(scale, name), ""}}, 1);
     }
 
@@ -234,7 +240,7 @@ private:
         table.head.emplace_back("systematic");
         for (const MethodResult& method : of_.methods) {
             for (const EffortResult& effort : method.efforts) {
-                std::vector<HtmlCell> row{method.method->name, fmt::format("{:g}", effort.effort)};
+                std::vector<HtmlCell> row{method.method->name, effortNumber(effort.effort)};
                 for (const Measure& m : costMeasures()) {
                     const double mean = effort.of(m).mean;
                     row.emplace_back(m.name == std::string_view("rays") || m.name == std::string_view("bytes")

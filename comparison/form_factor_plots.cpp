@@ -79,7 +79,8 @@ CaptionedPlot bySize(const FormFactorComparison& comparison) {
     int style = 0;
     for (const MethodResult& method : comparison.methods) {
         PlotCurve c{method.method->name, {}, style++};
-        if (!method.efforts.empty()) c.label += fmt::format(" {:g}", method.efforts.back().effort);
+        if (!method.efforts.empty())
+            c.label = fmt::format("{} {}", c.label, effortNumber(method.efforts.back().effort));
         for (const FactorSizeError& size : method.bySize)
             c.points.push_back(
                 {std::sqrt(size.lower * size.upper), size.relativeRms, size.relativeRms, size.relativeRms});

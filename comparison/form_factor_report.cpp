@@ -89,7 +89,7 @@ std::string comparisonText(const FormFactorComparison& comparison) {
     text += fmt::format(" {:>10}\n", "systematic");
     for (const MethodResult& method : comparison.methods) {
         for (const EffortResult& effort : method.efforts) {
-            text += fmt::format("{:<13} {:>8g} {:>8} {:>8.3g}", method.method->name, effort.effort,
+            text += fmt::format("{:<13} {:>8} {:>8} {:>8.3g}", method.method->name, effortNumber(effort.effort),
                                 countText(effort.of(measure("rays")).mean), effort.of(measure("cpu_seconds")).mean);
             for (const char* key : kShown)
                 text += fmt::format(" {:>16}", !comparison.lit && key == std::string("radiosity")

@@ -36,8 +36,8 @@ td{white-space:nowrap}
 .facts td{white-space:normal}
 th:first-child,td:first-child{text-align:left;padding-left:0;white-space:nowrap}
 th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-height:1.3}
-.dense{font-size:13px;width:100%}
-.dense th,.dense td{padding:5px 7px}
+.dense{font-size:12.5px;width:100%}
+.dense th,.dense td{padding:5px 5px}
 .dense th{font-size:12px}
 .dense td:first-child,.dense th:first-child{padding-left:0}
 .facts td{text-align:left;overflow-wrap:anywhere}
