@@ -196,7 +196,7 @@ void addFormFactorsCommand(CLI::App& compare, CommandRun& run) {
     command
         .add_option(
             "--reference", a.reference,
-            "auto, exact (convex scenes), METHOD:EFFORT or a matrix file; auto: exact, else a great many lines [auto]")
+            "auto, exact (convex scenes), METHOD:EFFORT or a matrix file; auto: exact, else closed forms [auto]")
         ->type_name("REFERENCE")
         ->group("Comparison");
     command.add_option("--seeds", a.seeds, "Runs of each method and effort, 1 to 1000 [5]")

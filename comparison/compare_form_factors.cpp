@@ -88,8 +88,9 @@ private:
         EffortResult result;
         result.effort = effort;
         std::vector<FormFactorMatrix> matrices;
-        for (int k = 0; k < options_.seeds; ++k) {
-            tell(fmt::format("{} {}, seed {} of {}", of.method->name, effortNumber(effort), k + 1, options_.seeds));
+        const int seeds = of.method->random ? options_.seeds : 1;
+        for (int k = 0; k < seeds; ++k) {
+            tell(fmt::format("{} {}, seed {} of {}", of.method->name, effortNumber(effort), k + 1, seeds));
             RunMeasures& run = result.runs.emplace_back();
             const Stopwatch watch;
             const double start = processorSeconds();
@@ -103,7 +104,8 @@ private:
             matrices.push_back(std::move(computed.matrix));
             progress_.throwIfCancelled();
         }
-        result.systematic = systematicError(matrices, reference_.matrix, result_.threshold);
+        result.systematic = of.method->random ? systematicError(matrices, reference_.matrix, result_.threshold)
+                                              : std::optional(result.runs.front().relativeRms);
         // The reference's own noise is the same for every seed too.
         if (result.systematic && result_.referenceError)
             result.systematic = std::sqrt(std::max(0.0, *result.systematic * *result.systematic -

@@ -40,8 +40,9 @@ const Measure& measure(std::string_view key);
 /// A method at one effort, with several seeds.
 struct EffortResult {
     double effort = 0.0;
-    std::vector<RunMeasures> runs;    //!< #seeds
-    std::optional<double> systematic; //!< see systematicError; without the reference's own error
+    std::vector<RunMeasures> runs; //!< #seeds, or one of a method that is not random
+    std::optional<double>
+        systematic; //!< see systematicError; all of a method that is not random. Without the reference's own error
     MeanDeviation of(const Measure& measure) const;
 };
 

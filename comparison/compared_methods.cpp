@@ -2,6 +2,7 @@
 
 #include "comparison/figure_text.h"
 #include "core/error.h"
+#include "formfactors/closed_form_method.h"
 #include "formfactors/global_lines.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/hemisphere.h"
@@ -46,14 +47,20 @@ ComputedMatrix globalLines(const MeshedScene& s, double effort, std::uint64_t se
     return {lines.matrix(storage, progress), static_cast<std::uint64_t>(effort)};
 }
 
+ComputedMatrix closedForm(const MeshedScene& s, double effort, std::uint64_t, MatrixStorage storage,
+                          Progress& progress) {
+    return allRows(ClosedForm(s.mesh, *s.rays, {.error = effort}), storage, progress);
+}
+
 } // namespace
 
 std::span<const ComparedMethod> comparedMethods() {
     static const std::vector<ComparedMethod> kMethods{
-        {"hemicube", "resolution", false, {16, 32, 64, 128}, 16, 4096, 2, hemicube},
-        {"hemisphere", "resolution", false, {16, 32, 64, 128}, 4, 4096, 4, hemisphere},
-        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, 1, 1 << 24, 1, localLines},
-        {"global-lines", "lines in all", true, {250e3, 1e6, 4e6, 16e6}, 1, 4294967295.0, 1, globalLines}};
+        {"hemicube", "resolution", false, {16, 32, 64, 128}, true, 16, 4096, 2, hemicube},
+        {"hemisphere", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 4, hemisphere},
+        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, true, 1, 1 << 24, 1, localLines},
+        {"global-lines", "lines in all", true, {250e3, 1e6, 4e6, 16e6}, true, 1, 4294967295.0, 1, globalLines},
+        {"closed-form", "error", false, {0.1, 0.01, 0.001}, false, 1e-8, 0.1, 0, closedForm}};
     return kMethods;
 }
 

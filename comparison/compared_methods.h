@@ -23,6 +23,7 @@ struct ComparedMethod {
     std::string effortName;     //!< what the number counts, such as "lines per patch"
     bool numberFirst;           //!< "4096 lines per patch" rather than "resolution 64"
     std::vector<double> ladder; //!< efforts that are compared if no others are asked for, ascending in cost
+    bool random;                //!< other seeds give other factors
     double lowest, highest;     //!< efforts that are allowed
     double multiple;            //!< of which an effort is a whole multiple; 0: of nothing
     ComputedMatrix (*compute)(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,

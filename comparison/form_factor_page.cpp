@@ -103,7 +103,7 @@ private:
         add("Reference", of_.reference);
         add("Its own error", !of_.referenceError ? "unknown"
                              : *of_.referenceError > 0
-                                 ? percentText(*of_.referenceError) + " relative RMS: errors below it tell nothing"
+                                 ? percentText(*of_.referenceError) + ": errors below it tell nothing"
                                  : "none but rounding");
         add("Its cost", fmt::format("{:.3g} CPU seconds", of_.referenceSeconds));
         add("Threshold", fmt::format("relative errors count factors from {:.3g}", of_.threshold));
@@ -142,7 +142,11 @@ private:
         page_.table(table);
     }
 
-    std::size_t seeds() const { return of_.methods.empty() ? 0 : of_.methods.front().efforts.front().runs.size(); }
+    std::size_t seeds() const {
+        std::size_t most = 0;
+        for (const MethodResult& method : of_.methods) most = std::max(most, method.efforts.front().runs.size());
+        return most;
+    }
 
     /// Round errors between the smallest and the largest that were met.
     std::vector<double> targets(const Measure& error) const {

@@ -98,7 +98,7 @@ std::string comparisonText(const FormFactorComparison& comparison) {
             text += fmt::format(" {:>10}\n", effort.systematic ? percentText(*effort.systematic) : "-");
         }
         const auto law = method.law(measure("rays"), measure("relative_rms"));
-        text += fmt::format("{:<13} relative RMS ~ rays^({})\n", "", slopeText(law));
+        if (law) text += fmt::format("{:<13} relative RMS ~ rays^({})\n", "", slopeText(law));
     }
     text += fmt::format("reference: {}, own error {}\n", comparison.reference,
                         comparison.referenceError ? percentText(*comparison.referenceError) : "unknown");

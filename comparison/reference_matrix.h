@@ -11,7 +11,7 @@ namespace lambert {
 /// What the methods are compared with.
 struct ReferenceChoice {
     enum class Kind {
-        Automatic, ///< exact where the scene is convex, else the best method at hand
+        Automatic, ///< exact where the scene is convex, else closed forms with hidden parts
         Exact,     ///< pair by pair in closed form, of a scene in which nothing hides anything
         Method,
         File
@@ -28,7 +28,8 @@ ReferenceChoice parseReference(const std::string& text);
 struct ReferenceMatrix {
     std::string description; //!< for people: "local lines, 262144 lines per patch, mean of two"
     FormFactorMatrix matrix; //!< in double
-    /// Relative RMS error of its own factors above the threshold, from two independent halves; none if it is not known.
+    /// Relative RMS error of its own factors above the threshold: from two independent halves, or what a method aims at that has
+    /// no chance in it; none if it is not known.
     std::optional<double> ownError;
 };
 
@@ -38,7 +39,7 @@ bool isConvex(const Scene& scene);
 /// Factors of all pairs of patches by closed form, as if nothing stood between them; what a row lacks of 1 leaves the scene.
 FormFactorMatrix unoccludedMatrix(const PatchMesh& mesh, Progress& progress);
 
-/// Computes or reads the reference. A method's is the mean of two matrices of seeds that no compared run has. Throws UsageError
+/// Computes or reads the reference. A random method's is the mean of two matrices of seeds that no compared run has. Throws UsageError
 /// for `exact` in a scene that is not convex, InputError for a file that does not fit the mesh, Cancelled.
 ReferenceMatrix makeReference(const ReferenceChoice& choice, const MeshedScene& scene, std::uint64_t seed,
                               double threshold, Progress& progress);

@@ -12,9 +12,9 @@ from html.parser import HTMLParser
 
 from lambert_cli import DATA, INPUT, INTERRUPTED, PROGRAM, SYSTEM, USAGE, ProgramTest, png_size, read_json, run
 
-METHODS = ("hemicube", "hemisphere", "local-lines", "global-lines")
+METHODS = ("hemicube", "hemisphere", "local-lines", "global-lines", "closed-form")
 EFFORTS = ("--efforts", "hemicube=16,32", "--efforts", "hemisphere=16,32", "--efforts", "local-lines=64,256",
-           "--efforts", "global-lines=4096,16384")
+           "--efforts", "global-lines=4096,16384", "--efforts", "closed-form=0.1,0.01")
 QUICK = ("--patches", "60", "--seeds", "2", "--size", "64x64", *EFFORTS)
 COSTS = {"cpu_seconds", "wall_seconds"}
 VOID = {"meta", "img", "br", "link", "input", "stop", "rect", "path", "use", "circle"}
@@ -134,7 +134,7 @@ class ThePage(CompareTest):
         self.assertEqual([method["name"] for method in report["methods"]], list(METHODS))
         self.assertGreater(report["reference"]["own_error"], 0)
         rows = self.rows(self.out)
-        self.assertEqual(len(rows), len(METHODS) * 2 * 2)
+        self.assertEqual(len(rows), 4 * 2 * 2 + 2)  # two seeds but of closed forms
         for method in report["methods"]:
             for effort in method["efforts"]:
                 same = [float(row["relative_rms"]) for row in rows
