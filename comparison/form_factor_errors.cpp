@@ -138,8 +138,8 @@ std::optional<double> systematicError(std::span<const FormFactorMatrix> found, c
 }
 
 std::vector<FactorSizeError> errorsBySize(std::span<const FormFactorMatrix> found, const FormFactorMatrix& reference) {
-    // Half decades from 10^-12 to 1; smaller factors are no one's concern.
-    constexpr int kBins = 24;
+    // Half decades from 10^-7 to 1; smaller factors are no one's concern.
+    constexpr int kBins = 14;
     constexpr std::size_t kFewestPairs = 10;
     struct Bins {
         double squares[kBins] = {};

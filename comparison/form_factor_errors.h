@@ -37,7 +37,7 @@ struct FactorSizeError {
     double relativeRms = 0.0; //!< over pairs and matrices
 };
 
-/// By half decades of F_ref, ascending, those with at least ten pairs.
+/// By half decades of F_ref from 10^-7 to 1, ascending, those with at least ten pairs.
 std::vector<FactorSizeError> errorsBySize(std::span<const FormFactorMatrix> found, const FormFactorMatrix& reference);
 
 /// √(Σ A |B − B_ref|² / Σ A |B_ref − B_e|²): relative to the reflected light, as no form factor changes what is emitted.

@@ -19,7 +19,7 @@ namespace lambert {
 
 namespace {
 
-constexpr int kMostDecades = 3; ///< of a false-colour scale
+constexpr int kMostDecades = 2; ///< of a false-colour scale
 constexpr std::size_t kMostTargets = 8;
 
 /// The places of the smallest value, within what is shown of it.
@@ -171,7 +171,8 @@ private:
         if (wanted.empty()) return;
         page_.section("Which to use when");
         HtmlTable table;
-        table.caption = fmt::format("CPU seconds to an error of the {}, between what was measured by power laws.",
+        table.caption = fmt::format("CPU seconds to an error of the {}, between what was measured by power laws; ≤ "
+                                    "where the least effort reaches it already.",
                                     of_.lit ? "radiosity" : "factors");
         table.head = {"method"};
         for (const double target : wanted) table.head.push_back(percentLabel(target));
@@ -185,16 +186,12 @@ private:
                 const bool atOnce = errors.front() <= wanted[t];
                 seconds[t].push_back(needed ? *needed : atOnce ? cost.front() : INFINITY);
                 row.emplace_back(needed   ? fmt::format("{:.2g}", *needed)
-                                 : atOnce ? fmt::format("below {:.2g}", cost.front())
+                                 : atOnce ? fmt::format("≤ {:.2g}", cost.front())
                                           : "not reached");
             }
             table.rows.push_back(row);
         }
-        // Who is below a target at once may need anything from nothing to its first cost: then none is known to be cheapest.
-        for (std::size_t t = 0; t < wanted.size(); ++t)
-            if (std::none_of(of_.methods.begin(), of_.methods.end(),
-                             [&](const MethodResult& m) { return m.means(error).front() <= wanted[t]; }))
-                markSmallest(table.rows, t + 1, seconds[t]);
+        for (std::size_t t = 0; t < wanted.size(); ++t) markSmallest(table.rows, t + 1, seconds[t]);
         page_.table(table);
     }
 

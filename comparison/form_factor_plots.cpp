@@ -10,6 +10,8 @@ namespace lambert {
 
 namespace {
 
+constexpr double kVaguestSlope = 0.3; ///< standard error of a slope that is still told
+
 /// One point per effort: the mean over the seeds, its bar one standard deviation to both sides.
 PlotCurve curve(const MethodResult& method, int style, const Measure& cost, const Measure& error) {
     PlotCurve result;
@@ -18,7 +20,9 @@ PlotCurve curve(const MethodResult& method, int style, const Measure& cost, cons
         result.points.push_back({effort.of(cost).mean, y.mean, y.mean - y.deviation, y.mean + y.deviation});
     }
     const auto law = method.law(cost, error);
-    result.label = law ? fmt::format("{}, slope {}", method.method->name, slopeText(law)) : method.method->name;
+    result.label = law && law->exponentError <= kVaguestSlope
+                       ? fmt::format("{}, slope {}", method.method->name, slopeText(law))
+                       : method.method->name;
     result.style = style;
     return result;
 }
