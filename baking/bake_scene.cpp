@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "formfactors/hemicube.h"
+#include "formfactors/matrix_quality.h"
 
 #include <fmt/format.h>
 
@@ -13,55 +15,7 @@ namespace lambert {
 namespace {
 
 constexpr double kBackFaceWarning = 0.01;
-/// A patch that sees more backs than this is inside something. (Not all backs: where solids touch, a ray may slip from the
-/// inside of one into the other.)
-constexpr double kInside = 0.8;
 constexpr double kUndividedWarning = 1e-3; ///< of the area
-
-void requireLight(const Scene& scene) {
-    const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
-        return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
-    });
-    if (lit) return;
-    const char* punctual = scene.lights.empty() ? "" : ", and lights without area are not used yet";
-    throw InputError(fmt::format(
-        "the scene has no light: no material that is used emits{}; give one with --emit MATERIAL=r,g,b", punctual));
-}
-
-/// What no material's constants tell: an emission texture may be black.
-void requireLight(const PatchMesh& mesh) {
-    const auto& emitted = mesh.emittedRadiosity;
-    if (std::all_of(emitted.begin(), emitted.end(), [](const Rgb& b) { return b == Rgb(0.0F); }))
-        throw InputError("the scene has no light: wherever a material emits, its emission texture is black or has a "
-                         "hole; give another light with --emit MATERIAL=r,g,b");
-}
-
-/// Entries per row at a resolution, from rows of a few patches spread over the mesh.
-double pilotEntriesPerRow(const PatchMesh& mesh, const RayCaster& rays, int resolution) {
-    const Hemicube method(mesh, rays, {.resolution = resolution});
-    RowAccumulator accumulator(mesh.size());
-    FormFactorRow row;
-    const std::size_t samples = std::min<std::size_t>(32, mesh.size());
-    std::size_t entries = 0;
-    for (std::size_t i = 0; i < samples; ++i) {
-        method.row(static_cast<std::uint32_t>(i * mesh.size() / samples), accumulator);
-        accumulator.take(row);
-        entries += row.entries.size();
-    }
-    return static_cast<double>(entries) / static_cast<double>(samples);
-}
-
-int chooseResolution(const PatchMesh& mesh, const RayCaster& rays, const BakeOptions& options) {
-    const auto count = static_cast<double>(mesh.size());
-    int chosen = 0;
-    for (int resolution = options.largestResolution; resolution >= 16; resolution -= 8) {
-        chosen = resolution;
-        if (3.0 * resolution * resolution * count > options.mostRays) continue;
-        const double bytes = count * bytesPerFactor(MatrixStorage::Float) * pilotEntriesPerRow(mesh, rays, resolution);
-        if (bytes <= static_cast<double>(options.memoryLimit)) break;
-    }
-    return chosen;
-}
 
 /// What the rays meet that end on backs.
 struct BacksMet {
@@ -75,7 +29,7 @@ BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFac
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
         const double back = matrix.back(patch);
-        return back < kInside ? static_cast<double>(mesh.area[patch]) * back : 0.0;
+        return back <= kCovered ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
     patches.resize(std::min<std::size_t>(patches.size(), 200));
@@ -115,7 +69,7 @@ RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFa
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const FormFactorRow row = matrix.row(i);
         quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
-        if (row.back >= kInside) continue;
+        if (row.back > kCovered) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
         backArea += static_cast<double>(mesh.area[i]) * row.back;
     }
@@ -150,38 +104,17 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
-MeshedScene meshUnlitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
-    MeshedScene result;
-    const bool keepPolygons = !options.patchLength && options.patches == std::size_t{0};
-    progress.begin("mesh", 0);
-    result.scene = std::make_shared<Scene>(prepareScene(
-        scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons, .addCrossings = !keepPolygons},
-        &result.prepareReport));
-    if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
-    result.rays = std::make_unique<RayCaster>(*result.scene);
-    result.mesh = buildPatchMesh(*result.scene, options, progress, &result.meshReport);
-    progress.end();
-    return result;
-}
-
-MeshedScene meshScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
-    requireLight(scene);
-    MeshedScene result = meshUnlitScene(scene, options.mesh, progress);
-    requireLight(result.mesh);
-    result.resolution = options.resolution ? *options.resolution : chooseResolution(result.mesh, *result.rays, options);
-    return result;
-}
-
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
     Stopwatch watch;
-    BakedScene result{meshScene(scene, options, progress)};
+    BakedScene result{meshLitScene(scene, options.mesh, progress)};
     result.seconds.mesh = watch.lap();
 
-    const Hemicube hemicube(
-        result.mesh, *result.rays,
-        {.resolution = result.resolution, .randomRotation = options.randomRotation, .seed = options.seed});
-    const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Float, progress);
-    result.rayCount = hemicube.raysPerRow() * result.mesh.size();
+    SceneMatrix obtained = obtainMatrix(options.formFactors, result.mesh, *result.rays, progress);
+    const FormFactorMatrix& matrix = obtained.matrix;
+    result.plan = std::move(obtained.plan);
+    result.repair = std::move(obtained.repair);
+    result.journal = std::move(obtained.journal);
+    result.rayCount = result.plan ? result.plan->rays : 0;
     result.rows = assessRows(result.mesh, *result.rays, matrix);
     result.seconds.formFactors = watch.lap();
 

@@ -1,5 +1,6 @@
 #include "baking/prediction.h"
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
@@ -74,27 +75,27 @@ double predictIterations(double reflected, const JacobiOptions& options) {
 
 BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progress& progress) {
     Stopwatch watch;
-    const MeshedScene meshed = meshScene(scene, options, progress);
+    const MeshedScene meshed = meshLitScene(scene, options.mesh, progress);
     BakePrediction result;
     result.seconds.mesh = watch.lap();
-    const Hemicube hemicube(
-        meshed.mesh, *meshed.rays,
-        {.resolution = meshed.resolution, .randomRotation = options.randomRotation, .seed = options.seed});
-    const Pilot pilot = pilotRows(meshed, hemicube, progress);
+    result.patches = meshed.mesh.size();
+    if (!options.formFactors.file.empty())
+        throw UsageError("--dry-run: predicts nothing of a bake from a matrix file (--form-factors)");
+    result.plan = planTransport(options.formFactors.transport, meshed.mesh, *meshed.rays, progress);
+    const auto method = makeMethod(result.plan, meshed.mesh, *meshed.rays);
+    const Pilot pilot = pilotRows(meshed, *method, progress);
 
     const auto patches = static_cast<double>(meshed.mesh.size());
     const double secondsPerRow = pilot.seconds / static_cast<double>(pilot.rows);
     const double entries = patches * pilot.entries;
-    result.patches = meshed.mesh.size();
-    result.resolution = meshed.resolution;
-    result.rays = hemicube.raysPerRow() * meshed.mesh.size();
-    result.secondsPerRay = secondsPerRow / static_cast<double>(hemicube.raysPerRow());
+    result.rays = result.plan.rays;
+    result.secondsPerRay = secondsPerRow / static_cast<double>(method->raysPerRow());
     result.seconds.formFactors = secondsPerRow * patches;
     result.seconds.solve =
         predictIterations(pilot.reflected, options.jacobi) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;
     result.matrixBytes =
-        static_cast<std::uint64_t>(entries * bytesPerFactor(MatrixStorage::Float) +
+        static_cast<std::uint64_t>(entries * bytesPerFactor(*result.plan.options.storage) +
                                    patches * (static_cast<double>(sizeof(FormFactorRow)) + kBytesPerRow));
     result.peakMemory = peakMemoryBytes() + result.matrixBytes + static_cast<std::uint64_t>(kBytesPerPatch * patches);
     return result;

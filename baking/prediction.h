@@ -10,7 +10,7 @@ namespace lambert {
 /// What a bake will take on this machine, as it is now loaded.
 struct BakePrediction {
     std::size_t patches = 0;
-    int resolution = 0;            //!< of the hemicubes, as bakeScene would choose it
+    TransportPlan plan;            //!< as bakeScene makes it
     std::uint64_t rays = 0;        //!< of all form factors
     double secondsPerRay = 0.0;    //!< with all threads
     BakeSeconds seconds;           //!< `mesh` is measured

@@ -2,6 +2,7 @@
 
 #include "baking/interpolation.h"
 #include "core/parallel.h"
+#include "formfactors/hemicube.h"
 
 #include <glm/geometric.hpp>
 
@@ -53,7 +54,7 @@ RgbSum interpolate(const BakedScene& scene, const SurfacePoint& point) {
 RgbSum gather(const BakedScene& scene, const Hemicube& hemicube, const ProbePoint& point, const glm::vec3& normal,
               RowAccumulator& accumulator) {
     const glm::vec3 origin = point.position + scene.rays->originOffset(0.0F) * normal;
-    hemicube.pointRow(origin, normal, 0.0F, accumulator);
+    hemicube.addHemicube(origin, normal, 0.0F, accumulator);
     FormFactorRow row;
     accumulator.take(row);
     RgbSum sum(0.0);

@@ -1,6 +1,7 @@
 #include "cli/analytic_cases.h"
 
 #include "baking/bake_scene.h"
+#include "formfactors/hemicube.h"
 #include "scene/example_scenes.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ void cube6(Results& results, Progress& progress) {
     for (std::size_t i = 0; i < 6; ++i) materials[i] = greyMaterial(fmt::format("f{}", i), reflectance[i], emitted[i]);
     BakeOptions options;
     options.mesh.patches = 3456;
-    options.resolution = 128;
+    options.formFactors.transport.resolution = 128;
     options.jacobi.tolerance = 1e-7;
     const BakedScene baked = bakeScene(boxScene(glm::vec3(1.0F), materials), options, progress);
     std::array<double, 6> sum{};
@@ -74,8 +75,8 @@ double energyImbalance(std::size_t patches, int resolution, Progress& progress) 
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
         BakeOptions options;
         options.mesh.patches = patches;
-        options.resolution = resolution;
-        options.seed = seed;
+        options.formFactors.transport.resolution = resolution;
+        options.formFactors.transport.seed = seed;
         options.jacobi.tolerance = 1e-7;
         const double imbalance = bakeScene(roomWithBoxScene(), options, progress).solution.energy.imbalance();
         squares += imbalance * imbalance;

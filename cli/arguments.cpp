@@ -19,23 +19,14 @@ namespace lambert {
 
 namespace {
 
-/// What --quality stands for, where no other option says otherwise.
-struct Quality {
-    const char* name;
-    double refinement; //!< see MeshOptions
-    int resolution;    //!< the largest, see BakeOptions
-    double rays;       //!< the most
-    double tolerance;
-};
-
 constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3}, Quality{"normal", 1.0, 128, 1.3e9, 1e-4},
                                 Quality{"high", 4.0, 192, 1.2e10, 1e-5}};
+
+} // namespace
 
 const Quality& qualityOf(const std::string& name) {
     return *std::find_if(kQualities.begin(), kQualities.end(), [&](const Quality& q) { return q.name == name; });
 }
-
-} // namespace
 
 void addMeshArguments(CLI::App& command, TransportArguments& a) {
     command
@@ -57,30 +48,21 @@ void addMeshArguments(CLI::App& command, TransportArguments& a) {
         .add_flag("--whole-contacts", a.wholeContacts,
                   "Do not divide surfaces along the outlines of what stands on them")
         ->group("Mesh");
-    command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
-        ->type_name("DEGREES")
-        ->check(between(0.0, 180.0))
-        ->group("Mesh");
 }
 
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
     addMeshArguments(command, a);
-    command.add_option("--method", a.method, "How form factors are computed [hemicube]")
-        ->check(CLI::IsMember({"hemicube"}))
-        ->group("Transport");
+    addFormFactorArguments(command, a);
     command
-        .add_option("--resolution", a.resolution,
-                    "Pixels along a hemicube's edge, even, 4 to 4096 [128, less if time or memory ask for it]")
-        ->type_name("R")
-        ->check(between(4.0, 4096.0))
+        .add_option(
+            "--form-factors", a.formFactors,
+            "Takes the form factors from a file that `lambert formfactors` or another program wrote for this mesh")
+        ->type_name("MATRIX")
         ->group("Transport");
-    command.add_option("--rotation", a.rotation, "Of the hemicubes about their normals [random]")
-        ->check(CLI::IsMember({"random", "fixed"}))
-        ->group("Transport");
-    command.add_option("--memory-limit", a.memoryLimit, "For the form factors, when the resolution is chosen [8 GiB]")
-        ->type_name("BYTES")
-        ->check(between(1.0, 1e18))
-        ->group("Transport");
+    command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
+        ->type_name("DEGREES")
+        ->check(between(0.0, 180.0))
+        ->group("Solution");
     command.add_option("--solver", a.solver, "[jacobi]")->check(CLI::IsMember({"jacobi"}))->group("Solution");
     command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
         ->type_name("T")
@@ -147,24 +129,22 @@ glm::vec3 parseVector(const std::string& text, const std::string& option) {
     return result;
 }
 
-BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
-    BakeOptions options;
-    const Quality& quality = qualityOf(a.quality);
-    options.mesh.patchLength = a.patchLength;
-    options.mesh.refinement = quality.refinement;
+MeshOptions meshOptions(const TransportArguments& a) {
+    MeshOptions options;
+    options.patchLength = a.patchLength;
+    options.refinement = qualityOf(a.quality).refinement;
     if (a.patchLength && !(*a.patchLength > 0.0))
         throw UsageError(fmt::format("--patch-length: found {}, allowed is a number above 0", *a.patchLength));
-    options.mesh.patches = a.patches;
-    options.mesh.splitContacts = !a.wholeContacts;
-    if (a.resolution && *a.resolution % 2 != 0)
-        throw UsageError(fmt::format("--resolution: found {}, allowed are even numbers from 4 to 4096", *a.resolution));
-    options.resolution = a.resolution;
-    options.largestResolution = quality.resolution;
-    options.mostRays = quality.rays;
-    options.randomRotation = a.rotation == "random";
-    options.seed = run.seed;
-    options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
-    options.jacobi.tolerance = a.tolerance.value_or(quality.tolerance);
+    options.patches = a.patches;
+    options.splitContacts = !a.wholeContacts;
+    return options;
+}
+
+BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
+    BakeOptions options;
+    options.mesh = meshOptions(a);
+    options.formFactors = matrixSource(a, run);
+    options.jacobi.tolerance = a.tolerance.value_or(qualityOf(a.quality).tolerance);
     options.jacobi.bounces = a.bounces;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;

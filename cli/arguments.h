@@ -7,6 +7,7 @@
 #include "scene/scene_reader.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -23,10 +24,20 @@ struct TransportArguments {
     std::optional<std::size_t> patches;
     bool wholeContacts = false;
     double creaseAngle = 30.0; //!< degrees
-    std::string method = "hemicube";
-    std::optional<int> resolution;
-    std::string rotation = "random";
+    // Form factors; see cli/transport_arguments.cpp
+    std::optional<std::string> method;
+    std::optional<int> resolution, hemicubes;
+    std::optional<std::string> rotation;
+    std::optional<std::uint32_t> lines;
+    std::optional<std::string> sampler;
+    std::string storage = "auto";
     double memoryLimit = 8.0 * 1073741824.0;
+    bool repair = false;
+    std::filesystem::path formFactors; //!< a matrix file; empty: computed
+    std::filesystem::path checkpoint;
+    bool resume = false;
+    double checkpointInterval = 60.0; //!< seconds
+    // Solution
     std::string solver = "jacobi";
     std::optional<double> tolerance;
     int bounces = 0;
@@ -47,14 +58,32 @@ struct PictureArguments {
     int samples = 4;
 };
 
+/// What --quality stands for, where no other option says otherwise.
+struct Quality {
+    const char* name;
+    double refinement; //!< see MeshOptions
+    int resolution;    //!< the largest, see TransportOptions
+    double rays;       //!< the most
+    double tolerance;
+};
+const Quality& qualityOf(const std::string& name);
+
 void addMeshArguments(CLI::App& command, TransportArguments& arguments);
-void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< and those of the mesh
+void addFormFactorArguments(CLI::App& command, TransportArguments& arguments);
+void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< both, a matrix file, the solution
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addCameraArguments(CLI::App& command, PictureArguments& arguments);  ///< size and camera
 void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< and file and samples
 
-/// Throws UsageError.
+/// The options that belong together, checked. Throw UsageError.
+MeshOptions meshOptions(const TransportArguments& arguments);
+MatrixSource matrixSource(const TransportArguments& arguments, const RunArguments& run);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
+
+/// For reports: the options in force, and what a repair had to change (null: none was asked for).
+nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan);
+std::string repairText(const RepairReport& repair); ///< one line
+nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair);
 
 struct Picture {
     std::filesystem::path path;

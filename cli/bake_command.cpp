@@ -34,8 +34,10 @@ ExitCode bakeOneScene(const BakeArguments& a) {
     const BakeJob job = jobOfOneScene(a);
     if (a.dryRun || a.skipExisting) return runBatch(a, {job}, false);
     std::vector<std::filesystem::path> targets = resultFiles(job);
-    if (!a.run.json.empty()) targets.push_back(a.run.json);
-    checkTargets(targets, inputFiles(sceneOf(a, job)));
+    for (const auto& target : {a.run.json, a.transport.checkpoint}) targets.push_back(target);
+    std::vector<std::filesystem::path> inputs = inputFiles(sceneOf(a, job));
+    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
+    checkTargets(targets, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -56,6 +58,8 @@ ExitCode bake(const BakeArguments& a) {
     const bool several =
         a.scenes.size() > 1 || (a.outputs.empty() && std::filesystem::is_directory(a.scenes.front(), ignored));
     if (several && a.outputDir.empty() && !a.dryRun) throw UsageError("several scenes: give --output-dir DIR");
+    if (several && !(a.transport.formFactors.empty() && a.transport.checkpoint.empty()))
+        throw UsageError("--form-factors and --checkpoint: are for one scene");
     if (!a.outputDir.empty() || several) return runBatch(a, planBatch(a), several);
     return bakeOneScene(a);
 }

@@ -108,7 +108,8 @@ bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
         oldest = oldest ? std::min(*oldest, time) : time;
     }
     if (!oldest) return false;
-    const std::vector<fs::path> inputs = inputFiles(sceneOf(a, job));
+    std::vector<fs::path> inputs = inputFiles(sceneOf(a, job));
+    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
     return std::none_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
         const fs::file_time_type time = fs::last_write_time(input, error);
         return !error && time > *oldest;
@@ -130,10 +131,11 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) log.warning(warning);
-    log.line(fmt::format("{} patches, hemicubes {}: {:.3g} rays, {} bounces to {:.1e}", baked.mesh.size(),
-                         baked.resolution, static_cast<double>(baked.rayCount), baked.solution.iterations,
-                         baked.solution.residual),
+    log.line(fmt::format("{} patches, {}: {:.3g} rays, {} bounces to {:.1e}", baked.mesh.size(),
+                         baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
+                         static_cast<double>(baked.rayCount), baked.solution.iterations, baked.solution.residual),
              fmt::format(", {:.1f} s", total.seconds()));
+    if (baked.repair) log.line(repairText(*baked.repair));
 
     const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
     const Stopwatch writing;
@@ -155,6 +157,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.rays = baked.rayCount;
     outcome.peakMemory = peakMemoryBytes();
     outcome.imbalance = baked.solution.energy.imbalance();
+    if (baked.journal) baked.journal->remove();
     log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
     if (baked.solution.residual > options.jacobi.tolerance && options.jacobi.bounces == 0) {
         log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", baked.solution.residual,
@@ -183,7 +186,7 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
                       {"patches", predicted.patches},
                       {"rays", predicted.rays},
                       {"peak_memory_bytes", predicted.peakMemory},
-                      {"options", {{"resolution", predicted.resolution}}},
+                      {"options", matrixOptionsJson(matrixSource(a.transport, a.run), predicted.plan)},
                       {"form_factors", {{"bytes", predicted.matrixBytes}}},
                       {"seconds",
                        {{"read", readSeconds},

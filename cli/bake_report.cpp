@@ -33,8 +33,7 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    options["resolution"] = baked.resolution;
-    options["rotation"] = in.transport.rotation;
+    options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
     options["quality"] = in.transport.quality;
     options["tolerance"] = bakeOptions(in.transport, in.run).jacobi.tolerance;
     options["bounces"] = in.transport.bounces;
@@ -121,7 +120,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["scene"] = in.scene.path.string();
     report["patches"] = baked.mesh.size();
     report["vertices"] = baked.baked.positions.size();
-    report["method"] = in.transport.method;
+    report["method"] = baked.plan ? nameOf(baked.plan->options.method) : "file";
     report["solver"] = in.transport.solver;
     report["iterations"] = baked.solution.iterations;
     report["residual"] = baked.solution.residual;
@@ -137,7 +136,8 @@ Json bakeReport(const BakeReportInput& in) {
     report["form_factors"] = {{"entries", baked.rows.entries},
                               {"bytes", baked.rows.bytes},
                               {"largest_closure_error", baked.rows.largestClosureError},
-                              {"back_face_fraction", baked.rows.backFaceFraction}};
+                              {"back_face_fraction", baked.rows.backFaceFraction},
+                              {"repair", repairJson(baked.repair)}};
     report["seconds"] = {
         {"read", in.readSeconds},       {"mesh", baked.seconds.mesh}, {"form_factors", baked.seconds.formFactors},
         {"solve", baked.seconds.solve}, {"bake", baked.seconds.bake}, {"write", in.writeSeconds},

@@ -11,6 +11,7 @@ namespace lambert {
 /// Each adds one subcommand to the program. When it was chosen, `run` is set to what it does.
 using CommandRun = std::function<ExitCode()>;
 void addBakeCommand(CLI::App& program, CommandRun& run);
+void addFormFactorsCommand(CLI::App& program, CommandRun& run);
 void addProbeCommand(CLI::App& program, CommandRun& run);
 void addCompareCommand(CLI::App& program, CommandRun& run);
 void addInfoCommand(CLI::App& program, CommandRun& run);

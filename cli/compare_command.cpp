@@ -143,7 +143,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     const Stopwatch watch;
     const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
-    const MeshedScene scene = meshUnlitScene(read.scene, mesh.mesh, progress);
+    const MeshedScene scene = meshScene(read.scene, mesh.mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
     logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
                                        scene.mesh.size())));
@@ -171,7 +171,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     return ExitCode::Ok;
 }
 
-void addFormFactorsCommand(CLI::App& compare, CommandRun& run) {
+void addCompareFormFactors(CLI::App& compare, CommandRun& run) {
     auto arguments = std::make_shared<CompareFormFactorsArguments>();
     CompareFormFactorsArguments& a = *arguments;
     CLI::App& command =
@@ -220,7 +220,7 @@ void addFormFactorsCommand(CLI::App& compare, CommandRun& run) {
 void addCompareCommand(CLI::App& program, CommandRun& run) {
     CLI::App& compare = *program.add_subcommand("compare", "Methods against each other");
     compare.require_subcommand(1);
-    addFormFactorsCommand(compare, run);
+    addCompareFormFactors(compare, run);
 }
 
 } // namespace lambert

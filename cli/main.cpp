@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
     program.require_subcommand(1);
     lambert::CommandRun command;
     lambert::addBakeCommand(program, command);
+    lambert::addFormFactorsCommand(program, command);
     lambert::addProbeCommand(program, command);
     lambert::addCompareCommand(program, command);
     lambert::addInfoCommand(program, command);
@@ -42,7 +43,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::RequiredError& error) {
         if (program.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
             return fail(ExitCode::Usage,
-                        fmt::format("no command \"{}\": there are bake, probe, compare, info and verify", argv[1]));
+                        fmt::format("no command \"{}\": there are bake, formfactors, probe, compare, info and verify", argv[1]));
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
     } catch (const CLI::ParseError& error) {
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");

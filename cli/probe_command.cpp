@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/points_file.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
@@ -12,13 +13,9 @@
 #include "core/whole_file.h"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <fstream>
 #include <memory>
 
 namespace lambert {
@@ -31,59 +28,6 @@ struct ProbeArguments {
     RunArguments run;
     std::filesystem::path points, output;
 };
-
-/// The first six numbers of a line, separated by commas and blanks; fewer if something else comes.
-std::vector<float> leadingNumbers(std::string_view line) {
-    std::vector<float> numbers;
-    const auto skip = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size())); };
-    for (skip(); numbers.size() < 6; skip()) {
-        float value = 0.0F;
-        if (line.starts_with('+')) line.remove_prefix(1);
-        const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-        if (error != std::errc()) break;
-        numbers.push_back(value);
-        line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-        skip();
-        if (line.empty()) break;
-        if (line.front() != ',') {
-            numbers.clear(); // something hangs on the number
-            break;
-        }
-        line.remove_prefix(1);
-    }
-    return numbers;
-}
-
-ProbePoint toPoint(const std::vector<float>& n, const std::string& place) {
-    const ProbePoint point{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    const float length = glm::length(point.normal);
-    if (!std::isfinite(point.position.x + point.position.y + point.position.z) || !std::isfinite(length) ||
-        length == 0.0F)
-        throw InputError(fmt::format("{}: found a point that is not finite or a normal without length", place));
-    return point;
-}
-
-std::vector<ProbePoint> readPoints(const std::filesystem::path& path) {
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path))
-        throw InputError(fmt::format("{}: cannot be read", path.string()));
-    std::vector<ProbePoint> points;
-    std::string line;
-    bool headerAllowed = true;
-    for (std::size_t number = 1; std::getline(file, line); ++number) {
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
-        const std::vector<float> numbers = leadingNumbers(line);
-        const std::string place = fmt::format("{}:{}", path.string(), number);
-        if (numbers.size() == 6)
-            points.push_back(toPoint(numbers, place));
-        else if (!headerAllowed || !numbers.empty())
-            throw InputError(
-                fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place, oneLine(line.substr(0, 60))));
-        headerAllowed = false;
-    }
-    if (points.empty()) throw InputError(fmt::format("{}: holds no points", path.string()));
-    return points;
-}
 
 std::string table(const std::vector<ProbePoint>& points, const std::vector<ProbeReading>& readings) {
     std::string text = "# x,y,z,nx,ny,nz,E_r,E_g,E_b,stderr_r,stderr_g,stderr_b\n";
@@ -101,7 +45,8 @@ ExitCode probe(const ProbeArguments& a) {
     const BakeOptions options = bakeOptions(a.transport, a.run);
     std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
     inputs.push_back(a.points);
-    checkTargets(std::array{a.output, a.run.json}, inputs);
+    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
+    checkTargets(std::array{a.output, a.run.json, a.transport.checkpoint}, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -126,6 +71,7 @@ ExitCode probe(const ProbeArguments& a) {
         writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt, readSeconds,
                               writing.seconds(), total.seconds()}),
                   a.run.json);
+    if (baked.journal) baked.journal->remove();
     return ExitCode::Ok;
 }
 

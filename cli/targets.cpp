@@ -30,7 +30,7 @@ void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> i
                 throw UsageError(fmt::format("{}: would overwrite {}", targets[i].string(),
                                              sameFile(input, inputs.front()) ? "the scene" : "what is read"));
         for (std::size_t j = 0; j < i; ++j)
-            if (sameFile(targets[i], targets[j]))
+            if (!targets[j].empty() && sameFile(targets[i], targets[j]))
                 throw UsageError(fmt::format("{}: named twice as a target", targets[i].string()));
         requireWritable(targets[i]);
         std::error_code ignored;

@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "core/vector_clones.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -38,14 +39,23 @@ std::uint32_t roundedUpRoot(std::uint32_t n) {
 
 } // namespace
 
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Sampler>, 4> kNames{{{"random", Sampler::Random},
+                                                                      {"stratified", Sampler::Stratified},
+                                                                      {"halton", Sampler::Halton},
+                                                                      {"sobol", Sampler::Sobol}}};
+
+} // namespace
+
 std::optional<Sampler> samplerByName(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, Sampler>, 4> names{{{"random", Sampler::Random},
-                                                                         {"stratified", Sampler::Stratified},
-                                                                         {"halton", Sampler::Halton},
-                                                                         {"sobol", Sampler::Sobol}}};
-    for (const auto& [known, sampler] : names)
+    for (const auto& [known, sampler] : kNames)
         if (known == name) return sampler;
     return std::nullopt;
+}
+
+std::string_view nameOf(Sampler sampler) {
+    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return name.second == sampler; })->first;
 }
 
 SamplePoints::SamplePoints(Sampler sampler, std::uint32_t count, std::uint32_t dimensions, std::uint64_t seed)

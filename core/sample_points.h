@@ -18,6 +18,7 @@ enum class Sampler {
 
 /// random, stratified, halton or sobol; nothing for any other name.
 std::optional<Sampler> samplerByName(std::string_view name);
+std::string_view nameOf(Sampler sampler);
 
 /// A set of points in the unit cube [0, 1)^dimensions. Every single point is uniform, whatever the sampler: sums over the
 /// set are unbiased. Sets of different seeds are independent. Coordinates are computed when asked for, in any order.

@@ -89,6 +89,12 @@ void writeWholeFiles(std::span<const FileContent> files) {
     for (Replacement& replacement : replacements) replacement.commit();
 }
 
+void writeWholeFiles(std::span<const FileStream> files) {
+    std::deque<Replacement> replacements;
+    for (const FileStream& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
+    for (Replacement& replacement : replacements) replacement.commit();
+}
+
 void requireWritable(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(path, error)) fail(path, EISDIR);

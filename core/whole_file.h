@@ -26,6 +26,14 @@ struct FileContent {
 /// old one is replaced, so that a disk that fills up leaves every old file as it was.
 void writeWholeFiles(std::span<const FileContent> files);
 
+struct FileStream {
+    std::filesystem::path path;
+    std::function<void(std::ostream&)> content;
+};
+
+/// The same for content too large for memory; what a `content` throws is passed on.
+void writeWholeFiles(std::span<const FileStream> files);
+
 /// Throws SystemError if `path` cannot become a file (its folder is missing or not writable, or it is a
 /// folder itself): to be called before hours of work, not after.
 void requireWritable(const std::filesystem::path& path);

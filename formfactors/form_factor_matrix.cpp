@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace lambert {
@@ -33,6 +34,10 @@ std::optional<MatrixStorage> storageByName(std::string_view name) {
     for (const StorageFacts& known : kStorages)
         if (known.name == name) return known.storage;
     return std::nullopt;
+}
+
+std::string_view nameOf(MatrixStorage storage) {
+    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return name.second == storage; })->first;
 }
 
 double bytesPerFactor(MatrixStorage storage) {
@@ -120,6 +125,45 @@ void FormFactorMatrix::setRow(std::size_t patch, const FormFactorRow& row) {
     packed.out = row.out;
     byStorage([&]<typename Value>(Value) { packPlain<Value>(row, packed); }, [&] { packCompact(row, packed); });
     rows_[patch] = std::move(packed);
+}
+
+namespace {
+
+/// What is fixed of a packed row's bytes.
+struct RowHeader {
+    double scale, back, out;
+    std::uint32_t count, counts;
+};
+
+} // namespace
+
+void FormFactorMatrix::appendBytes(std::size_t patch, std::vector<std::byte>& bytes) const {
+    const PackedRow& row = rows_[patch];
+    const RowHeader header{row.scale, row.back, row.out, row.count, row.counts ? 1U : 0U};
+    const auto headerBytes = std::as_bytes(std::span(&header, 1));
+    bytes.insert(bytes.end(), headerBytes.begin(), headerBytes.end());
+    if (row.bytes > 0) bytes.insert(bytes.end(), row.data.get(), row.data.get() + row.bytes);
+}
+
+bool FormFactorMatrix::setBytes(std::size_t patch, std::span<const std::byte> bytes) {
+    RowHeader header{};
+    if (bytes.size() < sizeof header) return false;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    bytes = bytes.subspan(sizeof header);
+    const std::size_t perFactor = storage_ == MatrixStorage::Double ? 12 : storage_ == MatrixStorage::Float ? 8 : 3;
+    const std::size_t least = header.count * perFactor;
+    if (bytes.size() < least || (storage_ != MatrixStorage::Compact && bytes.size() != least)) return false;
+    PackedRow row;
+    row.scale = header.scale;
+    row.back = header.back;
+    row.out = header.out;
+    row.count = header.count;
+    row.counts = header.counts != 0;
+    row.bytes = static_cast<std::uint32_t>(bytes.size());
+    row.data = std::make_unique_for_overwrite<std::byte[]>(row.bytes);
+    std::copy(bytes.begin(), bytes.end(), row.data.get());
+    rows_[patch] = std::move(row);
+    return true;
 }
 
 FormFactorRow FormFactorMatrix::row(std::size_t patch) const {

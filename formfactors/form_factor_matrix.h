@@ -39,6 +39,7 @@ enum class MatrixStorage {
 
 /// double, float or compact; nothing for any other name.
 std::optional<MatrixStorage> storageByName(std::string_view name);
+std::string_view nameOf(MatrixStorage storage);
 /// Bytes that a factor takes, about.
 double bytesPerFactor(MatrixStorage storage);
 
@@ -54,6 +55,11 @@ public:
     void setRow(std::size_t patch, const FormFactorRow& row);
     /// The row as stored.
     FormFactorRow row(std::size_t patch) const;
+
+    /// Appends the row as its bytes in memory, which no other storage or version understands.
+    void appendBytes(std::size_t patch, std::vector<std::byte>& bytes) const;
+    /// Sets a row from such bytes; false, and nothing done, if they are none.
+    bool setBytes(std::size_t patch, std::span<const std::byte> bytes);
 
     double back(std::size_t patch) const { return rows_[patch].back; }
     double out(std::size_t patch) const { return rows_[patch].out; }

@@ -1,6 +1,8 @@
 #include "formfactors/form_factor_method.h"
 
+#include "core/error.h"
 #include "core/parallel.h"
+#include "formfactors/matrix_journal.h"
 
 #include <bit>
 #include <utility>
@@ -28,21 +30,37 @@ void RowAccumulator::take(FormFactorRow& row) {
     }
 }
 
-FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress) {
+void FormFactorMethod::pointRow(const glm::vec3&, const glm::vec3&, std::uint32_t, RowAccumulator&) const {
+    throw UsageError("this method computes no form factors from points");
+}
+
+FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress,
+                               MatrixJournal* journal) {
     FormFactorMatrix matrix(method.patchCount(), storage);
+    std::vector<bool> done(method.patchCount(), false);
+    if (journal) done = journal->restore(matrix);
     std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()),
                                              RowAccumulator(method.patchCount()));
     progress.begin("form factors", method.patchCount());
-    parallelFor(method.patchCount(), 8, [&](std::size_t begin, std::size_t end, int worker) {
+    const auto compute = [&](std::size_t begin, std::size_t end, int worker) {
         RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
         FormFactorRow row;
         for (std::size_t patch = begin; patch < end; ++patch) {
+            if (done[patch]) continue;
             method.row(static_cast<std::uint32_t>(patch), accumulator);
             accumulator.take(row);
             matrix.setRow(patch, row);
+            if (journal) journal->add(matrix, patch);
         }
         progress.advance(end - begin);
-    });
+    };
+    try {
+        parallelFor(method.patchCount(), 8, compute);
+    } catch (...) {
+        if (journal) journal->flush(matrix);
+        throw;
+    }
+    if (journal) journal->flush(matrix);
     progress.end();
     return matrix;
 }

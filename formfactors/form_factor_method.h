@@ -3,6 +3,8 @@
 #include "core/progress.h"
 #include "formfactors/form_factor_matrix.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <vector>
 
@@ -44,11 +46,19 @@ public:
     virtual ~FormFactorMethod() = default;
     /// Adds the row of `patch` to an empty `accumulator`. The same arguments give the same bits.
     virtual void row(std::uint32_t patch, RowAccumulator& accumulator) const = 0;
+    /// The same for a point: `origin` as is, unit `normal`; `index` tells the random numbers of several points apart. Throws
+    /// UsageError where a method has no such rows.
+    virtual void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                          RowAccumulator& accumulator) const;
     virtual std::size_t patchCount() const = 0;
     virtual std::uint64_t raysPerRow() const = 0;
 };
 
-/// All rows, computed in parallel. Throws Cancelled.
-FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress);
+class MatrixJournal;
+
+/// All rows, computed in parallel; with a journal those that it does not hold. It then holds all that were computed, also
+/// if the computation ends early. Throws Cancelled; of the journal UsageError and SystemError.
+FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage storage, Progress& progress,
+                               MatrixJournal* journal = nullptr);
 
 } // namespace lambert

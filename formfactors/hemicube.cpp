@@ -114,13 +114,20 @@ Viewpoint Hemicube::viewpoint(std::uint32_t patch, int index) const {
 void Hemicube::row(std::uint32_t patch, RowAccumulator& accumulator) const {
     for (int k = 0; k < options_.perPatch; ++k) {
         const Viewpoint view = viewpoint(patch, k);
-        pointRow(view.origin, mesh_.normal[patch], view.angle, accumulator);
+        addHemicube(view.origin, mesh_.normal[patch], view.angle, accumulator);
     }
     accumulator.scale(1.0 / options_.perPatch);
 }
 
-void Hemicube::pointRow(const glm::vec3& origin, const glm::vec3& normal, float angle,
+void Hemicube::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
                         RowAccumulator& accumulator) const {
+    for (int k = 0; k < options_.perPatch; ++k)
+        addHemicube(origin, normal, options_.randomRotation ? viewAngle(index, k, options_.seed) : 0.0F, accumulator);
+    accumulator.scale(1.0 / options_.perPatch);
+}
+
+void Hemicube::addHemicube(const glm::vec3& origin, const glm::vec3& normal, float angle,
+                           RowAccumulator& accumulator) const {
     RayPacket packet;
     HitSum sum(mesh_.lookup, accumulator);
     for (const HemicubeFace& face : hemicubeFaces(normal, angle, options_.resolution)) {

@@ -29,8 +29,11 @@ public:
     std::size_t patchCount() const override { return mesh_.size(); }
     std::uint64_t raysPerRow() const override;
 
-    /// The row of a point instead of a patch: `origin` as is, unit `normal`, hemicube turned by `angle` (radians).
-    void pointRow(const glm::vec3& origin, const glm::vec3& normal, float angle, RowAccumulator& accumulator) const;
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                  RowAccumulator& accumulator) const override;
+
+    /// One hemicube of a row: `origin` as is, unit `normal`, turned by `angle` (radians).
+    void addHemicube(const glm::vec3& origin, const glm::vec3& normal, float angle, RowAccumulator& accumulator) const;
 
     /// Where the `index`-th hemicube of a patch stands. For whoever traces the same rays.
     Viewpoint viewpoint(std::uint32_t patch, int index = 0) const;

@@ -44,18 +44,27 @@ std::uint64_t Hemisphere::raysPerRow() const {
 }
 
 void Hemisphere::row(std::uint32_t patch, RowAccumulator& accumulator) const {
+    for (int k = 0; k < options_.perPatch; ++k)
+        addHemisphere(viewpoint(mesh_, rays_, patch, k, options_.perPatch, options_.randomRotation, options_.seed),
+                      mesh_.normal[patch], accumulator);
+}
+
+void Hemisphere::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                          RowAccumulator& accumulator) const {
+    for (int k = 0; k < options_.perPatch; ++k)
+        addHemisphere({origin, options_.randomRotation ? viewAngle(index, k, options_.seed) : 0.0F}, normal,
+                      accumulator);
+}
+
+void Hemisphere::addHemisphere(const Viewpoint& view, const glm::vec3& normal, RowAccumulator& accumulator) const {
     const double weight = 1.0 / static_cast<double>(raysPerRow());
+    const OrthonormalBasis basis(normal, view.angle);
     RayPacket packet;
     HitSum sum(mesh_.lookup, accumulator);
-    for (int k = 0; k < options_.perPatch; ++k) {
-        const Viewpoint view =
-            viewpoint(mesh_, rays_, patch, k, options_.perPatch, options_.randomRotation, options_.seed);
-        const OrthonormalBasis basis(mesh_.normal[patch], view.angle);
-        for (std::size_t first = 0; first < directions_.size(); first += RayPacket::kSize) {
-            turnedDirections(basis, directions_.data() + first, packet);
-            rays_.closest(view.origin, packet);
-            sum.add(packet, RayPacket::kSize, weight);
-        }
+    for (std::size_t first = 0; first < directions_.size(); first += RayPacket::kSize) {
+        turnedDirections(basis, directions_.data() + first, packet);
+        rays_.closest(view.origin, packet);
+        sum.add(packet, RayPacket::kSize, weight);
     }
 }
 

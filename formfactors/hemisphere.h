@@ -1,6 +1,7 @@
 #pragma once
 
 #include "formfactors/form_factor_method.h"
+#include "formfactors/viewpoints.h"
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
 
@@ -26,10 +27,14 @@ public:
     Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const HemisphereOptions& options);
 
     void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                  RowAccumulator& accumulator) const override;
     std::size_t patchCount() const override { return mesh_.size(); }
     std::uint64_t raysPerRow() const override;
 
 private:
+    void addHemisphere(const Viewpoint& view, const glm::vec3& normal, RowAccumulator& accumulator) const;
+
     const PatchMesh& mesh_;
     const RayCaster& rays_;
     HemisphereOptions options_;

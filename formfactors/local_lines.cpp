@@ -51,6 +51,12 @@ void makeDirections(const float* points, std::uint32_t count, const OrthonormalB
     }
 }
 
+/// Of the lines of one patch or point; `kind` tells these apart.
+std::uint64_t seedOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
+    const auto key = philox({index, 0, 0, kind}, seed);
+    return (std::uint64_t{key[0]} << 32) | key[1];
+}
+
 } // namespace
 
 LocalLines::LocalLines(const PatchMesh& mesh, const RayCaster& rays, const LocalLinesOptions& options)
@@ -61,22 +67,26 @@ LocalLines::LocalLines(const PatchMesh& mesh, const RayCaster& rays, const Local
     cellBits_ = std::min((static_cast<int>(std::bit_width(options.lines / 4)) + 1) / 2, 8);
 }
 
-void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
+void LocalLines::makeDirections(std::uint64_t seed, const glm::vec3& normal, Lines& lines) const {
     const std::uint32_t count = options_.lines;
-    const auto key = philox({patch, 0, 0, 0x4C494E45}, options_.seed);
-    const SamplePoints points(options_.sampler, count, 4, (std::uint64_t{key[0]} << 32) | key[1]);
+    const SamplePoints points(options_.sampler, count, 4, seed);
     lines.points.resize(std::size_t{4} * count);
     for (std::uint32_t d = 0; d < 4; ++d)
         points.fill(0, d, std::span(lines.points).subspan(std::size_t{d} * count, count));
-    const LineArrays arrays(lines.coordinates, count);
-    const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[patch])) * mesh_.normal[patch];
-    makeDirections(lines.points.data(), count, OrthonormalBasis(mesh_.normal[patch]), arrays);
-    PatchPoints(mesh_, patch)
-        .fill(lines.points.data() + std::size_t{2} * count, count, offset, arrays.originX, arrays.originY,
-              arrays.originZ);
+    lambert::makeDirections(lines.points.data(), count, OrthonormalBasis(normal), LineArrays(lines.coordinates, count));
     lines.all.resize(count);
     std::iota(lines.all.begin(), lines.all.end(), 0U);
     lines.order = lines.sorter.order(lines.points, count, 2, cellBits_, lines.all);
+}
+
+void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
+    const std::uint32_t count = options_.lines;
+    makeDirections(seedOf(patch, 0x4C494E45, options_.seed), mesh_.normal[patch], lines);
+    const LineArrays arrays(lines.coordinates, count);
+    const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[patch])) * mesh_.normal[patch];
+    PatchPoints(mesh_, patch)
+        .fill(lines.points.data() + std::size_t{2} * count, count, offset, arrays.originX, arrays.originY,
+              arrays.originZ);
 }
 
 std::vector<Ray> LocalLines::lines(std::uint32_t patch) const {
@@ -93,6 +103,21 @@ std::vector<Ray> LocalLines::lines(std::uint32_t patch) const {
 void LocalLines::row(std::uint32_t patch, RowAccumulator& accumulator) const {
     thread_local Lines lines; // keeps its memory from row to row
     makeLines(patch, lines);
+    trace(lines, accumulator);
+}
+
+void LocalLines::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                          RowAccumulator& accumulator) const {
+    thread_local Lines lines;
+    makeDirections(seedOf(index, 0x504F494E, options_.seed), normal, lines);
+    const LineArrays l(lines.coordinates, options_.lines);
+    std::fill_n(l.originX, options_.lines, origin.x);
+    std::fill_n(l.originY, options_.lines, origin.y);
+    std::fill_n(l.originZ, options_.lines, origin.z);
+    trace(lines, accumulator);
+}
+
+void LocalLines::trace(Lines& lines, RowAccumulator& accumulator) const {
     const LineArrays l(lines.coordinates, options_.lines);
     const double weight = 1.0 / static_cast<double>(options_.lines);
     RayPacket packet;

@@ -28,6 +28,8 @@ public:
     LocalLines(const PatchMesh& mesh, const RayCaster& rays, const LocalLinesOptions& options);
 
     void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                  RowAccumulator& accumulator) const override;
     std::size_t patchCount() const override { return mesh_.size(); }
     std::uint64_t raysPerRow() const override { return options_.lines; }
 
@@ -42,7 +44,10 @@ private:
         CellSorter sorter;
         std::span<const std::uint32_t> order; ///< in which to trace them
     };
+    /// Directions and order of the lines of one seed.
+    void makeDirections(std::uint64_t seed, const glm::vec3& normal, Lines& lines) const;
     void makeLines(std::uint32_t patch, Lines& lines) const;
+    void trace(Lines& lines, RowAccumulator& accumulator) const;
 
     const PatchMesh& mesh_;
     const RayCaster& rays_;

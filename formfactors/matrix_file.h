@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "formfactors/form_factor_matrix.h"
 
 #include <filesystem>
@@ -27,18 +28,27 @@ std::optional<MatrixFormat> matrixFormatOf(const std::filesystem::path& path);
 /// A matrix with what solving it needs.
 struct PatchMatrix {
     FormFactorMatrix matrix;
-    std::vector<double> area;       //!< #patches, m²
-    std::vector<double> emissivity; //!< #patches, or empty; only View3D's files hold it
+    std::vector<double> area{};       //!< #patches, m²
+    std::vector<double> emissivity{}; //!< #patches, or empty; only View3D's files hold it
 };
 
-/// Every file that writeMatrix writes for `path`: the matrix, and except for View3D `NAME.EXT.areas.csv` with one line
+/// Every file that writeMatrix writes for `path`: the matrix, and last `NAME.EXT.areas.csv` with one line
 /// "area,F_back,F_out" per patch.
 std::vector<std::filesystem::path> matrixFiles(const std::filesystem::path& path, std::size_t patches);
 
-/// Writes a matrix, each file whole or not at all. `comment` (scene, method, N; one line) heads the formats that have
-/// comments. Without emissivities View3D's are 1. Throws UsageError for an unknown extension and for a CSV of more than
-/// kMostDenseCsv patches, SystemError.
-void writeMatrix(const std::filesystem::path& path, const PatchMatrix& patches, const std::string& comment);
+/// Throws UsageError for an unknown extension and for a CSV of more than kMostDenseCsv patches.
+void checkMatrixFile(const std::filesystem::path& path, std::size_t patches);
+
+/// Writes a matrix: all files whole, or none. `comment` (scene, method, N; one line) heads the formats that have
+/// comments. Without emissivities View3D's are 1. Throws what checkMatrixFile throws, SystemError, Cancelled.
+void writeMatrix(const std::filesystem::path& path, const PatchMatrix& patches, const std::string& comment,
+                 Progress& progress);
+
+/// The same for rows of points, `matrix` being the points' rows, of `columns` columns each: no areas but a file
+/// `NAME.EXT.points.csv` with the text `remainders`. Not in View3D's format.
+void writePointRows(const std::filesystem::path& path, const FormFactorMatrix& matrix, std::size_t columns,
+                    const std::string& remainders, const std::string& comment, Progress& progress);
+std::vector<std::filesystem::path> pointRowFiles(const std::filesystem::path& path);
 
 /// Reads a matrix that writeMatrix or another program wrote. Without areas file F_out is what a row lacks of 1, and the areas
 /// are empty. Throws InputError with file and line: numbers that are not finite, factors outside [0, 1.01], a matrix that

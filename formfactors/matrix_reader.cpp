@@ -315,6 +315,7 @@ FormFactorMatrix readSparseNumPy(const fs::path& stem, MatrixStorage storage) {
 
 void readAreas(const fs::path& path, PatchMatrix& patches) {
     NumberLines lines(path);
+    patches.area.clear();
     for (std::size_t i = 0; i < patches.matrix.size(); ++i) {
         lines.require('#', "a line \"area,F_back,F_out\" for every patch");
         patches.area.push_back(lines.number(0.0, 1e30, "an area"));
@@ -344,7 +345,8 @@ PatchMatrix readMatrix(const fs::path& path, MatrixStorage storage) {
         result.matrix = readCsv(path, storage);
         break;
     case MatrixFormat::View3D:
-        return readView3D(path, storage);
+        result = readView3D(path, storage);
+        break;
     case MatrixFormat::NumPy: {
         const fs::path stem = fs::path(path).replace_extension();
         const bool sparse = !fs::exists(path, error) && fs::exists(fs::path(stem.string() + ".indptr.npy"), error);

@@ -48,32 +48,56 @@ private:
     fmt::memory_buffer block_;
 };
 
-void writeBlocks(const fs::path& path, const std::function<void(BlockWriter&)>& write) {
-    writeWholeFile(path, [&](std::ostream& stream) {
-        BlockWriter writer(stream);
-        write(writer);
-        writer.flush();
-    });
+/// What a file will hold.
+using Content = std::function<void(BlockWriter&)>;
+
+FileStream fileOf(const fs::path& path, Content write) {
+    return {path, [write = std::move(write)](std::ostream& stream) {
+                BlockWriter writer(stream);
+                write(writer);
+                writer.flush();
+            }};
+}
+
+/// The rows of a matrix on their way to a file: of `columns` columns each.
+struct Rows {
+    const FormFactorMatrix& matrix;
+    std::size_t columns;
+    Progress& progress;
+
+    std::size_t size() const { return matrix.size(); }
+    template <typename Use>
+    void visit(std::size_t i, Use&& use) const {
+        progress.throwIfCancelled();
+        matrix.visit(i, use);
+    }
+};
+
+/// How many entries visit() shows: compact storage leaves out what it rounded to 0.
+std::uint64_t shownEntries(const Rows& rows) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) rows.visit(i, [&](std::uint32_t, double) { ++count; });
+    return count;
 }
 
 /// A row with its zeros.
-void fillRow(const FormFactorMatrix& matrix, std::size_t i, std::vector<double>& row) {
-    row.assign(matrix.size(), 0.0);
-    matrix.visit(i, [&](std::uint32_t j, double factor) { row[j] = factor; });
+void fillRow(const Rows& rows, std::size_t i, std::vector<double>& row) {
+    row.assign(rows.columns, 0.0);
+    rows.visit(i, [&](std::uint32_t j, double factor) { row[j] = factor; });
 }
 
-void writeMatrixMarket(BlockWriter& out, const FormFactorMatrix& matrix, const std::string& comment) {
+void writeMatrixMarket(BlockWriter& out, const Rows& rows, const std::string& comment) {
     out.text("%%MatrixMarket matrix coordinate real general\n% {}\n", comment);
-    out.text("{} {} {}\n", matrix.size(), matrix.size(), matrix.entryCount());
-    for (std::size_t i = 0; i < matrix.size(); ++i)
-        matrix.visit(i, [&](std::uint32_t j, double factor) { out.text("{} {} {}\n", i + 1, j + 1, factor); });
+    out.text("{} {} {}\n", rows.size(), rows.columns, shownEntries(rows));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        rows.visit(i, [&](std::uint32_t j, double factor) { out.text("{} {} {}\n", i + 1, j + 1, factor); });
 }
 
-void writeCsv(BlockWriter& out, const FormFactorMatrix& matrix, const std::string& comment) {
+void writeCsv(BlockWriter& out, const Rows& rows, const std::string& comment) {
     out.text("# {}\n", comment);
     std::vector<double> row;
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        fillRow(matrix, i, row);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        fillRow(rows, i, row);
         for (std::size_t j = 0; j < row.size(); ++j) out.text("{}{:.9g}", j == 0 ? "" : ",", row[j]);
         out.text("\n");
     }
@@ -81,7 +105,7 @@ void writeCsv(BlockWriter& out, const FormFactorMatrix& matrix, const std::strin
 
 /// View3D holds single precision. Its header is a line of 30 characters: program, version, format, whether the surfaces
 /// form an enclosure, whether emittances are included in the factors, number of surfaces.
-void writeView3D(BlockWriter& out, const PatchMatrix& patches) {
+void writeView3D(BlockWriter& out, const PatchMatrix& patches, const Rows& rows) {
     const FormFactorMatrix& matrix = patches.matrix;
     double open = 0.0;
     for (std::size_t i = 0; i < matrix.size(); ++i) open = std::max(open, matrix.out(i) + matrix.back(i));
@@ -91,7 +115,7 @@ void writeView3D(BlockWriter& out, const PatchMatrix& patches) {
     out.text("\n");
     std::vector<double> row;
     for (std::size_t i = 0; i < matrix.size(); ++i) {
-        fillRow(matrix, i, row);
+        fillRow(rows, i, row);
         for (std::size_t j = 0; j < row.size(); ++j) out.text("{}{}", j == 0 ? "" : " ", static_cast<float>(row[j]));
         out.text("\n");
     }
@@ -113,37 +137,36 @@ void writeNumPyHeader(BlockWriter& out, std::string_view type, const std::string
     out.text("{}", header);
 }
 
-void writeDenseNumPy(BlockWriter& out, const FormFactorMatrix& matrix) {
-    writeNumPyHeader(out, "<f8", fmt::format("{}, {}", matrix.size(), matrix.size()));
+void writeDenseNumPy(BlockWriter& out, const Rows& rows) {
+    writeNumPyHeader(out, "<f8", fmt::format("{}, {}", rows.size(), rows.columns));
     std::vector<double> row;
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        fillRow(matrix, i, row);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        fillRow(rows, i, row);
         for (const double factor : row) out.binary(factor);
     }
 }
 
 /// The three arrays of scipy.sparse.csr_matrix.
-void writeSparseNumPy(const std::vector<fs::path>& files, const FormFactorMatrix& matrix) {
-    const std::string entries = fmt::format("{},", matrix.entryCount());
-    writeBlocks(files[0], [&](BlockWriter& out) {
-        writeNumPyHeader(out, "<f8", entries);
-        for (std::size_t i = 0; i < matrix.size(); ++i)
-            matrix.visit(i, [&](std::uint32_t, double factor) { out.binary(factor); });
-    });
-    writeBlocks(files[1], [&](BlockWriter& out) {
-        writeNumPyHeader(out, "<i8", entries);
-        for (std::size_t i = 0; i < matrix.size(); ++i)
-            matrix.visit(i, [&](std::uint32_t j, double) { out.binary(static_cast<std::int64_t>(j)); });
-    });
-    writeBlocks(files[2], [&](BlockWriter& out) {
-        writeNumPyHeader(out, "<i8", fmt::format("{},", matrix.size() + 1));
-        std::int64_t end = 0;
-        out.binary(end);
-        for (std::size_t i = 0; i < matrix.size(); ++i) {
-            matrix.visit(i, [&](std::uint32_t, double) { ++end; });
-            out.binary(end);
-        }
-    });
+std::vector<FileStream> sparseNumPy(const std::vector<fs::path>& files, const Rows& rows) {
+    const auto array = [&rows](const char* type, auto write) {
+        return [=, &rows](BlockWriter& out) {
+            writeNumPyHeader(out, type, fmt::format("{},", shownEntries(rows)));
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                rows.visit(i, [&](std::uint32_t j, double factor) { write(out, j, factor); });
+        };
+    };
+    return {fileOf(files[0], array("<f8", [](BlockWriter& out, std::uint32_t, double factor) { out.binary(factor); })),
+            fileOf(files[1], array("<i8", [](BlockWriter& out, std::uint32_t j,
+                                             double) { out.binary(static_cast<std::int64_t>(j)); })),
+            fileOf(files[2], [&rows](BlockWriter& out) {
+                writeNumPyHeader(out, "<i8", fmt::format("{},", rows.size() + 1));
+                std::int64_t end = 0;
+                out.binary(end);
+                for (std::size_t i = 0; i < rows.size(); ++i) {
+                    rows.visit(i, [&](std::uint32_t, double) { ++end; });
+                    out.binary(end);
+                }
+            })};
 }
 
 void writeAreas(BlockWriter& out, const PatchMatrix& patches) {
@@ -153,6 +176,12 @@ void writeAreas(BlockWriter& out, const PatchMatrix& patches) {
 }
 
 fs::path appended(const fs::path& path, const char* end) { return fs::path(path.string() + end); }
+
+MatrixFormat requireFormat(const fs::path& path) {
+    if (const auto format = matrixFormatOf(path)) return *format;
+    throw UsageError(fmt::format("{}: found the extension \"{}\", allowed are .mtx, .npy, .csv and .txt (View3D)",
+                                 path.string(), path.extension().string()));
+}
 
 } // namespace
 
@@ -176,38 +205,64 @@ std::vector<fs::path> matrixFiles(const fs::path& path, std::size_t patches) {
         const fs::path stem = fs::path(path).replace_extension();
         files = {appended(stem, ".data.npy"), appended(stem, ".indices.npy"), appended(stem, ".indptr.npy")};
     }
-    if (format != MatrixFormat::View3D) files.push_back(appended(path, ".areas.csv"));
+    files.push_back(appended(path, ".areas.csv"));
     return files;
 }
 
-void writeMatrix(const fs::path& path, const PatchMatrix& patches, const std::string& comment) {
-    const auto format = matrixFormatOf(path);
-    if (!format)
-        throw UsageError(fmt::format("{}: found the extension \"{}\", allowed are .mtx, .npy, .csv and .txt (View3D)",
-                                     path.string(), path.extension().string()));
-    const FormFactorMatrix& matrix = patches.matrix;
-    if (format == MatrixFormat::Csv && matrix.size() > kMostDenseCsv)
+void checkMatrixFile(const fs::path& path, std::size_t patches) {
+    if (requireFormat(path) == MatrixFormat::Csv && patches > kMostDenseCsv)
         throw UsageError(fmt::format("{}: a dense CSV of {} patches is too large, allowed are {}; use .mtx or .npy",
-                                     path.string(), matrix.size(), kMostDenseCsv));
-    const std::vector<fs::path> files = matrixFiles(path, matrix.size());
-    switch (*format) {
+                                     path.string(), patches, kMostDenseCsv));
+}
+
+void writeMatrix(const fs::path& path, const PatchMatrix& patches, const std::string& comment, Progress& progress) {
+    checkMatrixFile(path, patches.matrix.size());
+    const std::vector<fs::path> files = matrixFiles(path, patches.matrix.size());
+    const Rows rows{patches.matrix, patches.matrix.size(), progress};
+    std::vector<FileStream> streams;
+    switch (requireFormat(path)) {
     case MatrixFormat::MatrixMarket:
-        writeBlocks(path, [&](BlockWriter& out) { writeMatrixMarket(out, matrix, comment); });
+        streams = {fileOf(path, [&](BlockWriter& out) { writeMatrixMarket(out, rows, comment); })};
         break;
     case MatrixFormat::Csv:
-        writeBlocks(path, [&](BlockWriter& out) { writeCsv(out, matrix, comment); });
+        streams = {fileOf(path, [&](BlockWriter& out) { writeCsv(out, rows, comment); })};
         break;
     case MatrixFormat::View3D:
-        writeBlocks(path, [&](BlockWriter& out) { writeView3D(out, patches); });
+        streams = {fileOf(path, [&](BlockWriter& out) { writeView3D(out, patches, rows); })};
         break;
     case MatrixFormat::NumPy:
         if (files.front() == path)
-            writeBlocks(path, [&](BlockWriter& out) { writeDenseNumPy(out, matrix); });
+            streams = {fileOf(path, [&](BlockWriter& out) { writeDenseNumPy(out, rows); })};
         else
-            writeSparseNumPy(files, matrix);
+            streams = sparseNumPy(files, rows);
         break;
     }
-    if (format != MatrixFormat::View3D) writeBlocks(files.back(), [&](BlockWriter& out) { writeAreas(out, patches); });
+    streams.push_back(fileOf(files.back(), [&](BlockWriter& out) { writeAreas(out, patches); }));
+    writeWholeFiles(streams);
 }
+
+void writePointRows(const fs::path& path, const FormFactorMatrix& matrix, std::size_t columns,
+                    const std::string& remainders, const std::string& comment, Progress& progress) {
+    const Rows rows{matrix, columns, progress};
+    FileStream stream;
+    switch (requireFormat(path)) {
+    case MatrixFormat::MatrixMarket:
+        stream = fileOf(path, [&](BlockWriter& out) { writeMatrixMarket(out, rows, comment); });
+        break;
+    case MatrixFormat::Csv:
+        stream = fileOf(path, [&](BlockWriter& out) { writeCsv(out, rows, comment); });
+        break;
+    case MatrixFormat::NumPy:
+        stream = fileOf(path, [&](BlockWriter& out) { writeDenseNumPy(out, rows); });
+        break;
+    case MatrixFormat::View3D:
+        throw UsageError(path.string() + ": View3D's format holds square matrices, not rows of points");
+    }
+    const FileStream companion =
+        fileOf(pointRowFiles(path).back(), [&](BlockWriter& out) { out.text("{}", remainders); });
+    writeWholeFiles(std::array{stream, companion});
+}
+
+std::vector<fs::path> pointRowFiles(const fs::path& path) { return {path, appended(path, ".points.csv")}; }
 
 } // namespace lambert

@@ -28,11 +28,13 @@ Viewpoint viewpoint(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t 
         point = PatchPoints(mesh, patch).at({points.at(k, 0), points.at(k, 1)});
     }
     Viewpoint result{point + rays.originOffset(std::sqrt(mesh.area[patch])) * mesh.normal[patch], 0.0F};
-    if (randomRotation) {
-        const auto random = philox({patch, static_cast<std::uint32_t>(index), 0, 0}, seed);
-        result.angle = 2.0F * std::numbers::pi_v<float> * uniformFloat(random[0]);
-    }
+    if (randomRotation) result.angle = viewAngle(patch, index, seed);
     return result;
+}
+
+float viewAngle(std::uint32_t index, int k, std::uint64_t seed) {
+    const auto random = philox({index, static_cast<std::uint32_t>(k), 0, 0}, seed);
+    return 2.0F * std::numbers::pi_v<float> * uniformFloat(random[0]);
 }
 
 } // namespace lambert

@@ -18,6 +18,9 @@ struct Viewpoint {
 Viewpoint viewpoint(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t patch, int index, int count,
                     bool randomRotation, std::uint64_t seed);
 
+/// The angle (radians) of the `k`-th view from patch or point `index`.
+float viewAngle(std::uint32_t index, int k, std::uint64_t seed);
+
 /// Throws UsageError unless `perPatch` is 1 to 1024.
 void checkPerPatch(int perPatch);
 

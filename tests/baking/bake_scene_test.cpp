@@ -17,7 +17,7 @@ using Quad = std::array<glm::vec3, 4>;
 BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
     BakeOptions options;
     options.mesh.patches = patches;
-    options.resolution = resolution;
+    options.formFactors.transport.resolution = resolution;
     options.jacobi.tolerance = 1e-6;
     Progress progress;
     return bakeScene(scene, options, progress);

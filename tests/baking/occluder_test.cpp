@@ -23,8 +23,8 @@ Scene roomWithBlackBox(bool occluder) {
 BakedScene bake(const Scene& scene, MeshOptions mesh) {
     BakeOptions options;
     options.mesh = mesh;
-    options.resolution = 32;
-    options.randomRotation = false; // it goes by the patches' numbers, and these differ
+    options.formFactors.transport.resolution = 32;
+    options.formFactors.transport.randomRotation = false; // it goes by the patches' numbers, and these differ
     Progress progress;
     return bakeScene(scene, options, progress);
 }

@@ -85,10 +85,10 @@ Scene leafOfPolygons() {
 BakedScene bake(const Scene& scene, double patchLength, int bounces, int resolution = 64) {
     BakeOptions options;
     options.mesh.patchLength = patchLength;
-    options.resolution = resolution;
+    options.formFactors.transport.resolution = resolution;
     options.jacobi.tolerance = 1e-8;
     options.jacobi.bounces = bounces;
-    options.randomRotation = false;
+    options.formFactors.transport.randomRotation = false;
     Progress progress;
     return bakeScene(scene, options, progress);
 }

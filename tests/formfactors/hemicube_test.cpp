@@ -144,7 +144,7 @@ TEST(Hemicube, PointRowConvergesToThePointToPolygonFormula) {
         RowAccumulator accumulator(mesh.size());
         FormFactorRow row;
         for (int turn = 0; turn < 40; ++turn) {
-            hemicube.pointRow({0, 0, 0}, {0, 0, 1}, 0.1571F * static_cast<float>(turn), accumulator);
+            hemicube.addHemicube({0, 0, 0}, {0, 0, 1}, 0.1571F * static_cast<float>(turn), accumulator);
             accumulator.take(row);
             ASSERT_EQ(row.entries.size(), 1U);
             EXPECT_NEAR(row.entries[0].value, 0.2394564705, tolerance * 0.24) << resolution;

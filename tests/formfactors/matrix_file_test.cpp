@@ -39,6 +39,8 @@ protected:
     MatrixFile() { fs::create_directories(folder_); }
     ~MatrixFile() override { fs::remove_all(folder_); }
 
+    Progress progress_;
+
     fs::path path(const std::string& name) const { return folder_ / name; }
 
     void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
@@ -61,7 +63,7 @@ private:
 TEST_F(MatrixFile, ExactFormatsGiveBackTheSameBits) {
     const PatchMatrix original = sample(37);
     for (const char* name : {"m.mtx", "m.npy", "M.NPY"}) {
-        writeMatrix(path(name), original, "a test");
+        writeMatrix(path(name), original, "a test", progress_);
         const PatchMatrix found = readMatrix(path(name));
         ASSERT_EQ(found.matrix.size(), 37U) << name;
         EXPECT_EQ(found.area, original.area) << name;
@@ -71,7 +73,7 @@ TEST_F(MatrixFile, ExactFormatsGiveBackTheSameBits) {
 
 TEST_F(MatrixFile, CsvKeepsNineDigits) {
     const PatchMatrix original = sample(12);
-    writeMatrix(path("m.csv"), original, "a test");
+    writeMatrix(path("m.csv"), original, "a test", progress_);
     const PatchMatrix found = readMatrix(path("m.csv"));
     for (std::size_t i = 0; i < 12; ++i) {
         const FormFactorRow a = original.matrix.row(i), b = found.matrix.row(i);
@@ -95,7 +97,7 @@ TEST_F(MatrixFile, View3DKeepsSinglePrecisionAndEmissivities) {
         row.out = 1.0 - row.sum();
         original.matrix.setRow(i, row);
     }
-    writeMatrix(path("m.txt"), original, "a test");
+    writeMatrix(path("m.txt"), original, "a test", progress_);
     const auto floats = [](double value) { return static_cast<float>(value); };
     const PatchMatrix found = readMatrix(path("m.txt"));
     ASSERT_EQ(found.matrix.size(), 9U);
@@ -154,7 +156,7 @@ TEST_F(MatrixFile, RefusalsNameFileLineAndWhatIsAllowed) {
 
 TEST_F(MatrixFile, ADenseCsvOfManyPatchesIsRefused) {
     PatchMatrix large{FormFactorMatrix(kMostDenseCsv + 1), std::vector<double>(kMostDenseCsv + 1, 1.0), {}};
-    EXPECT_THROW(writeMatrix(path("m.csv"), large, ""), UsageError);
+    EXPECT_THROW(writeMatrix(path("m.csv"), large, "", progress_), UsageError);
     EXPECT_FALSE(fs::exists(path("m.csv")));
 }
 
@@ -167,7 +169,7 @@ TEST_F(MatrixFile, LargeNumPyMatricesAreThreeSparseArrays) {
         large.matrix.setRow(i, row);
         large.area.push_back(1.0);
     }
-    writeMatrix(path("m.npy"), large, "");
+    writeMatrix(path("m.npy"), large, "", progress_);
     EXPECT_FALSE(fs::exists(path("m.npy")));
     for (const fs::path& file : matrixFiles(path("m.npy"), large.matrix.size())) EXPECT_TRUE(fs::exists(file)) << file;
     const PatchMatrix found = readMatrix(path("m.npy"));

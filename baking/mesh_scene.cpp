@@ -1,0 +1,54 @@
+#include "baking/mesh_scene.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lambert {
+
+namespace {
+
+void requireLight(const Scene& scene) {
+    const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
+        return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
+    });
+    if (lit) return;
+    const char* punctual = scene.lights.empty() ? "" : ", and lights without area are not used yet";
+    throw InputError(fmt::format(
+        "the scene has no light: no material that is used emits{}; give one with --emit MATERIAL=r,g,b", punctual));
+}
+
+/// What no material's constants tell: an emission texture may be black.
+void requireLight(const PatchMesh& mesh) {
+    const auto& emitted = mesh.emittedRadiosity;
+    if (std::all_of(emitted.begin(), emitted.end(), [](const Rgb& b) { return b == Rgb(0.0F); }))
+        throw InputError("the scene has no light: wherever a material emits, its emission texture is black or has a "
+                         "hole; give another light with --emit MATERIAL=r,g,b");
+}
+
+} // namespace
+
+MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
+    MeshedScene result;
+    const bool keepPolygons = !options.patchLength && options.patches == std::size_t{0};
+    progress.begin("mesh", 0);
+    result.scene = std::make_shared<Scene>(prepareScene(
+        scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons, .addCrossings = !keepPolygons},
+        &result.prepareReport));
+    if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
+    result.rays = std::make_unique<RayCaster>(*result.scene);
+    result.mesh = buildPatchMesh(*result.scene, options, progress, &result.meshReport);
+    progress.end();
+    return result;
+}
+
+MeshedScene meshLitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
+    requireLight(scene);
+    MeshedScene result = meshScene(scene, options, progress);
+    requireLight(result.mesh);
+    return result;
+}
+
+} // namespace lambert

@@ -1,0 +1,170 @@
+#include "cli/arguments.h"
+#include "cli/validators.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+/// Options that would do nothing are mistakes.
+void refuseUnused(const TransportArguments& a, TransportMethod method) {
+    const auto refuse = [&](const char* option) {
+        throw UsageError(fmt::format("{}: means nothing to the method {}", option, nameOf(method)));
+    };
+    if (!hasResolution(method)) {
+        if (a.resolution) refuse("--resolution");
+        if (a.hemicubes) refuse("--hemicubes");
+        if (a.rotation) refuse("--rotation");
+    }
+    if (!hasLines(method)) {
+        if (a.lines) refuse("--lines");
+        if (a.sampler) refuse("--sampler");
+    }
+}
+
+void refuseBesideFile(const TransportArguments& a) {
+    if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || !a.checkpoint.empty())
+        throw UsageError("--form-factors: the file holds what was computed; leave out --method, its options and "
+                         "--checkpoint");
+}
+
+} // namespace
+
+void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
+    command
+        .add_option("--method", a.method,
+                    fmt::format("How form factors are computed: {} [hemicube]", fmt::join(methodNames(), ", ")))
+        ->check(CLI::IsMember(methodNames()))
+        ->type_name("METHOD")
+        ->group("Transport");
+    command
+        .add_option("--resolution", a.resolution,
+                    "Pixels along the edge of a hemicube, even, 16 to 4096 [128], or of a hemisphere's square, a "
+                    "multiple of 4 [220]; less if time or memory ask for it")
+        ->type_name("R")
+        ->check(between(4.0, 4096.0))
+        ->group("Transport");
+    command.add_option("--hemicubes", a.hemicubes, "Hemicubes or hemispheres spread over a patch, 1 to 1024 [1]")
+        ->type_name("K")
+        ->check(between(1.0, 1024.0))
+        ->group("Transport");
+    command.add_option("--rotation", a.rotation, "Of these about their normals: random or fixed [random]")
+        ->check(CLI::IsMember({"random", "fixed"}))
+        ->type_name("HOW")
+        ->group("Transport");
+    command
+        .add_option("--lines", a.lines,
+                    "Local lines per patch, 1 to 16777216 [32768; less if time or memory ask for it]")
+        ->type_name("N")
+        ->check(between(1.0, 16777216.0))
+        ->group("Transport");
+    command.add_option("--sampler", a.sampler, "Of lines: random, stratified, halton or sobol [sobol]")
+        ->check(CLI::IsMember({"random", "stratified", "halton", "sobol"}))
+        ->type_name("SAMPLER")
+        ->group("Transport");
+    command
+        .add_option(
+            "--storage", a.storage,
+            "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), "
+            "auto: float while it fits [auto]")
+        ->check(CLI::IsMember({"double", "float", "compact", "auto"}))
+        ->type_name("STORAGE")
+        ->group("Transport");
+    command
+        .add_option("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]")
+        ->type_name("BYTES")
+        ->check(between(1.0, 1e18))
+        ->group("Transport");
+    command
+        .add_flag("--repair", a.repair,
+                  "Makes the form factors reciprocal, A_i F_ij = A_j F_ji, and their rows sum to what they must")
+        ->group("Transport");
+    auto* checkpoint =
+        command
+            .add_option("--checkpoint", a.checkpoint,
+                        "Keeps finished rows in a file, every minute and when interrupted; removed at the "
+                        "end")
+            ->type_name("FILE")
+            ->group("Run");
+    command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")
+        ->needs(checkpoint)
+        ->group("Run");
+    command.add_option("--checkpoint-interval", a.checkpointInterval, "[60]")
+        ->type_name("SECONDS")
+        ->check(between(0.0, 1e6))
+        ->needs(checkpoint)
+        ->group("Run");
+}
+
+MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) {
+    MatrixSource source;
+    TransportOptions& options = source.transport;
+    const Quality& quality = qualityOf(a.quality);
+    options.method = methodByName(a.method.value_or("hemicube")).value();
+    options.resolution = a.resolution;
+    options.perPatch = a.hemicubes.value_or(1);
+    options.randomRotation = a.rotation.value_or("random") == "random";
+    options.lines = a.lines;
+    options.sampler = samplerByName(a.sampler.value_or("sobol")).value();
+    options.seed = run.seed;
+    options.storage = storageByName(a.storage); // none for auto
+    options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
+    options.largestResolution = quality.resolution;
+    options.mostRays = quality.rays;
+    source.file = a.formFactors;
+    source.repair = a.repair;
+    source.checkpoint = {a.checkpoint, a.resume, a.checkpointInterval};
+    source.version = LAMBERT_VERSION;
+    if (a.formFactors.empty())
+        refuseUnused(a, options.method);
+    else
+        refuseBesideFile(a);
+    checkTransport(options);
+    return source;
+}
+
+nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan) {
+    using Json = nlohmann::ordered_json;
+    Json json;
+    const TransportMethod method = source.transport.method;
+    const bool resolution = plan && hasResolution(method);
+    const bool lines = plan && hasLines(method);
+    json["resolution"] = resolution ? Json(*plan->options.resolution) : Json(nullptr);
+    json["hemicubes"] = resolution ? Json(source.transport.perPatch) : Json(nullptr);
+    json["rotation"] = resolution ? Json(source.transport.randomRotation ? "random" : "fixed") : Json(nullptr);
+    json["lines"] = lines ? Json(*plan->options.lines) : Json(nullptr);
+    json["sampler"] = lines ? Json(nameOf(source.transport.sampler)) : Json(nullptr);
+    const auto storage = plan ? plan->options.storage : source.transport.storage;
+    json["storage"] = nameOf(storage.value_or(MatrixStorage::Double));
+    json["memory_limit"] = source.transport.memoryLimit;
+    json["repair"] = source.repair;
+    json["form_factors"] = source.file.empty() ? Json(nullptr) : Json(source.file.string());
+    return json;
+}
+
+std::string repairText(const RepairReport& repair) {
+    std::string text =
+        fmt::format("repair: reciprocity error was {:.2g}, rows off by {:.2g} at most; largest correction {:.2g} %",
+                    repair.reciprocityError, repair.closureError, 100.0 * repair.largestCorrection);
+    if (!repair.failed.empty())
+        text += fmt::format("; {} rows could not be closed, the first is {}, by {:.2g} at most", repair.failed.size(),
+                            repair.failed.front() + 1, repair.remainingError);
+    return text;
+}
+
+nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair) {
+    if (!repair) return nullptr;
+    return {{"reciprocity_error_before", repair->reciprocityError},
+            {"closure_error_before", repair->closureError},
+            {"largest_correction", repair->largestCorrection},
+            {"closure_error_after", repair->remainingError},
+            {"iterations", repair->iterations},
+            {"failed_rows", repair->failed}};
+}
+
+} // namespace lambert

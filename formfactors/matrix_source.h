@@ -1,0 +1,43 @@
+#pragma once
+
+#include "formfactors/matrix_journal.h"
+#include "formfactors/repair.h"
+#include "formfactors/transport.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lambert {
+
+/// Where the form factors of a scene come from.
+struct MatrixSource {
+    TransportOptions transport;   //!< how they are computed
+    std::filesystem::path file{}; //!< or a matrix file that holds them; empty: computed
+    bool repair = false;          //!< made reciprocal and closed afterwards, see repair()
+    CheckpointOptions checkpoint{};
+    std::string version{}; //!< of the program, for checkpoints
+};
+
+struct SceneMatrix {
+    FormFactorMatrix matrix;
+    std::optional<TransportPlan> plan;      //!< none: from a file
+    std::optional<RepairReport> repair;     //!< none: not asked for
+    std::unique_ptr<MatrixJournal> journal; //!< to be removed once what is made of the matrix is on the disk
+};
+
+/// Reads or computes the form factors of a mesh. `rays` are of `rays.scene()`, which the mesh is of. Throws UsageError,
+/// InputError, SystemError, Cancelled.
+SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, const RayCaster& rays, Progress& progress);
+
+/// A matrix file as the form factors of this mesh. Throws InputError unless it has the mesh's number of patches, its areas
+/// if the file has areas, and rows that sum to 1 within 1 %.
+FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,
+                              const TransportOptions& transport);
+
+/// One line that names all that the rows of a planned matrix depend on.
+std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, const Scene& scene,
+                           const std::string& version);
+
+} // namespace lambert

@@ -1,0 +1,196 @@
+#include "formfactors/transport.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "formfactors/hemicube.h"
+#include "formfactors/hemisphere.h"
+#include "formfactors/local_lines.h"
+#include "formfactors/matrix_journal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+struct MethodTraits {
+    TransportMethod method;
+    std::string_view name;
+    bool resolution, lines;
+};
+
+constexpr std::array kMethods{MethodTraits{TransportMethod::Hemicube, "hemicube", true, false},
+                              MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false},
+                              MethodTraits{TransportMethod::LocalLines, "local-lines", false, true}};
+
+const MethodTraits& traitsOf(TransportMethod method) {
+    return *std::find_if(kMethods.begin(), kMethods.end(), [&](const MethodTraits& t) { return t.method == method; });
+}
+
+constexpr double kBytesPerRow = 96.0; ///< beside its factors, with the allocator's
+constexpr double kPilotRays = 4e7;    ///< most of the rows that are computed to learn their length
+
+/// The efforts to choose from, largest first: resolutions or lines.
+std::vector<std::uint32_t> effortLadder(const TransportOptions& o) {
+    std::vector<std::uint32_t> ladder;
+    const auto largest = static_cast<std::uint32_t>(o.largestResolution);
+    switch (o.method) {
+    case TransportMethod::Hemicube:
+        for (std::uint32_t r = largest; r >= 16; r -= 8) ladder.push_back(r);
+        break;
+    case TransportMethod::Hemisphere:
+        for (auto r = static_cast<std::uint32_t>(1.7320508 * largest) / 4 * 4; r >= 28; r -= 12) ladder.push_back(r);
+        break;
+    case TransportMethod::LocalLines:
+        for (std::uint32_t n = std::bit_floor(3 * largest * largest); n >= 512; n /= 2) ladder.push_back(n);
+        break;
+    }
+    return ladder;
+}
+
+TransportPlan withEffort(const TransportOptions& options, std::uint32_t effort) {
+    TransportPlan plan{options};
+    if (hasResolution(options.method) && !options.resolution) plan.options.resolution = static_cast<int>(effort);
+    if (hasLines(options.method) && !options.lines) plan.options.lines = effort;
+    return plan;
+}
+
+/// Entries per row, from rows of a few patches spread over the mesh.
+double pilotEntriesPerRow(const FormFactorMethod& method, Progress& progress) {
+    const std::size_t count = method.patchCount();
+    const auto affordable = static_cast<std::size_t>(kPilotRays / static_cast<double>(method.raysPerRow() + 1));
+    const std::size_t samples = std::min(std::clamp<std::size_t>(affordable, 4, 32), count);
+    std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()), RowAccumulator(count));
+    std::vector<std::size_t> entries(samples);
+    parallelFor(samples, 1, [&](std::size_t begin, std::size_t end, int worker) {
+        RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
+        FormFactorRow row;
+        for (std::size_t k = begin; k < end; ++k) {
+            progress.throwIfCancelled();
+            method.row(static_cast<std::uint32_t>(k * count / samples), accumulator);
+            accumulator.take(row);
+            entries[k] = row.entries.size();
+        }
+    });
+    double sum = 0.0;
+    for (const std::size_t n : entries) sum += static_cast<double>(n);
+    return sum / static_cast<double>(samples);
+}
+
+/// Chooses the storage and predicts its size; whether it fits.
+bool planMemory(TransportPlan& plan, double patches, double entriesPerRow) {
+    const auto limit = static_cast<double>(plan.options.memoryLimit);
+    const auto bytes = [&](MatrixStorage storage) {
+        return patches * (entriesPerRow * bytesPerFactor(storage) + kBytesPerRow);
+    };
+    if (!plan.options.storage)
+        plan.options.storage = bytes(MatrixStorage::Float) <= limit ? MatrixStorage::Float : MatrixStorage::Compact;
+    plan.bytes = bytes(*plan.options.storage);
+    return plan.bytes <= limit;
+}
+
+} // namespace
+
+std::optional<TransportMethod> methodByName(std::string_view name) {
+    for (const MethodTraits& traits : kMethods)
+        if (traits.name == name) return traits.method;
+    return std::nullopt;
+}
+
+std::string_view nameOf(TransportMethod method) { return traitsOf(method).name; }
+
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const MethodTraits& traits : kMethods) names.emplace_back(traits.name);
+    return names;
+}
+
+bool hasResolution(TransportMethod method) { return traitsOf(method).resolution; }
+bool hasLines(TransportMethod method) { return traitsOf(method).lines; }
+
+std::string TransportPlan::effort() const {
+    std::string text(nameOf(options.method));
+    if (hasResolution(options.method)) {
+        text += fmt::format(", resolution {}", *options.resolution);
+        if (options.perPatch > 1) text += fmt::format(", {} per patch", options.perPatch);
+    }
+    if (hasLines(options.method)) text += fmt::format(", {} lines per patch", *options.lines);
+    return text;
+}
+
+void checkTransport(const TransportOptions& o) {
+    const auto refuse = [](const char* option, auto found, const char* allowed) {
+        throw UsageError(fmt::format("{}: found {}, allowed are {}", option, found, allowed));
+    };
+    if (hasResolution(o.method) && o.resolution) {
+        const bool cube = o.method == TransportMethod::Hemicube;
+        if (cube && (*o.resolution < 16 || *o.resolution > 4096 || *o.resolution % 2 != 0))
+            refuse("--resolution", *o.resolution, "even numbers from 16 to 4096");
+        if (!cube && (*o.resolution < 4 || *o.resolution > 4096 || *o.resolution % 4 != 0))
+            refuse("--resolution", *o.resolution, "multiples of 4 from 4 to 4096 for hemispheres");
+    }
+    if (hasLines(o.method) && o.lines && (*o.lines < 1 || *o.lines > 1U << 24))
+        refuse("--lines", *o.lines, "1 to 16777216 per patch");
+    if (o.perPatch < 1 || o.perPatch > 1024) refuse("--hemicubes", o.perPatch, "1 to 1024");
+}
+
+TransportPlan planTransport(const TransportOptions& options, const PatchMesh& mesh, const RayCaster& rays,
+                            Progress& progress) {
+    checkTransport(options);
+    const auto patches = static_cast<double>(mesh.size());
+    const bool given = hasResolution(options.method) ? options.resolution.has_value() : options.lines.has_value();
+    const std::vector<std::uint32_t> ladder = given ? std::vector<std::uint32_t>{0} : effortLadder(options);
+    for (const std::uint32_t effort : ladder) {
+        TransportPlan plan = withEffort(options, effort);
+        const auto method = makeMethod(plan, mesh, rays);
+        plan.rays = method->raysPerRow() * mesh.size();
+        const bool last = effort == ladder.back();
+        if (!last && static_cast<double>(plan.rays) > options.mostRays) continue;
+        // A dense matrix as float, or as asked for, needs no closer look.
+        if (planMemory(plan, patches, patches) && (options.storage || plan.options.storage == MatrixStorage::Float))
+            return plan;
+        plan.options.storage = options.storage;
+        if (planMemory(plan, patches, pilotEntriesPerRow(*method, progress))) return plan;
+        if (last)
+            throw SystemError(fmt::format(
+                "the form factors of {} patches would take about {:.2g} GiB ({}), --memory-limit allows {:.2g}; allow "
+                "more, or take fewer patches{} or --storage compact",
+                mesh.size(), plan.bytes / 1073741824.0, plan.effort(),
+                static_cast<double>(options.memoryLimit) / 1073741824.0,
+                hasLines(options.method) ? ", fewer --lines" : ", a lower --resolution"));
+    }
+    throw UsageError("no effort to choose from"); // not reached: the last one returns or throws
+}
+
+std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays) {
+    const TransportOptions& o = plan.options;
+    switch (o.method) {
+    case TransportMethod::Hemicube:
+        return std::make_unique<Hemicube>(mesh, rays,
+                                          HemicubeOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
+    case TransportMethod::Hemisphere:
+        return std::make_unique<Hemisphere>(
+            mesh, rays, HemisphereOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
+    case TransportMethod::LocalLines:
+        break;
+    }
+    return std::make_unique<LocalLines>(mesh, rays, LocalLinesOptions{o.lines.value(), o.sampler, o.seed});
+}
+
+FormFactorMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                               Progress& progress, MatrixJournal* journal) {
+    return computeMatrix(*makeMethod(plan, mesh, rays), plan.options.storage.value(), progress, journal);
+}
+
+std::vector<double> repairWeights(const PatchMesh& mesh) {
+    std::vector<double> weights;
+    for (const float area : mesh.area) weights.push_back(1.0 / static_cast<double>(area));
+    return weights;
+}
+
+} // namespace lambert

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "core/progress.h"
+#include "core/sample_points.h"
+#include "formfactors/form_factor_matrix.h"
+#include "formfactors/form_factor_method.h"
+#include "meshing/patch_mesh.h"
+#include "scene/ray_caster.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+class MatrixJournal;
+
+/// The one place where a way to compute form factors is made from its name and options: what a new method needs beside its
+/// own files is a line in each table and switch of transport.cpp.
+enum class TransportMethod { Hemicube, Hemisphere, LocalLines };
+
+std::optional<TransportMethod> methodByName(std::string_view name);
+std::string_view nameOf(TransportMethod method);
+std::vector<std::string> methodNames();
+bool hasResolution(TransportMethod method); ///< TransportOptions::resolution and below count
+bool hasLines(TransportMethod method);      ///< TransportOptions::lines and below count
+
+struct TransportOptions {
+    TransportMethod method = TransportMethod::Hemicube;
+
+    std::optional<int> resolution; //!< of hemicubes and hemispheres, see there; none: chosen by the bounds below
+    int perPatch = 1;              //!< hemicubes or hemispheres per patch
+    bool randomRotation = true;    //!< of these
+
+    std::optional<std::uint32_t> lines; //!< per patch, 1 to 2^24; none: a power of two by the bounds below
+    Sampler sampler = Sampler::Sobol;   //!< of lines
+
+    std::uint64_t seed = 1;
+    std::optional<MatrixStorage> storage;               //!< none: float while it fits the memory, else compact
+    std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< bytes for the form factors
+
+    int largestResolution =
+        128;                 //!< of hemicubes where none is given, 16 to 4096; other methods take about as many rays
+    double mostRays = 1.3e9; //!< in all, where effort is not given: a few minutes on two cores
+};
+
+/// What a computation is going to take.
+struct TransportPlan {
+    TransportOptions options;   //!< with the method's resolution or lines, and the storage, filled in
+    std::uint64_t rays = 0;     //!< in all
+    double bytes = 0.0;         //!< of the matrix, about; of small ones an upper bound
+    std::string effort() const; //!< "hemicube, resolution 128", for logs
+};
+
+/// Throws UsageError for what can be known to be wrong without a mesh.
+void checkTransport(const TransportOptions& options);
+
+/// Fills in what is not given: the largest effort within the three bounds, and the storage. Computes some rows where a
+/// dense matrix would not fit. Throws UsageError, SystemError if the matrix would not fit memoryLimit, Cancelled.
+TransportPlan planTransport(const TransportOptions& options, const PatchMesh& mesh, const RayCaster& rays,
+                            Progress& progress);
+
+/// A planned method that computes rows. `mesh` and `rays` must outlive it.
+std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays);
+
+/// The matrix. With a journal, rows that it holds are taken from it and all others entered.
+/// Throws Cancelled; of the journal InputError and SystemError.
+FormFactorMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                               Progress& progress, MatrixJournal* journal = nullptr);
+
+/// Weights of the rows for repair(): #patches.
+std::vector<double> repairWeights(const PatchMesh& mesh);
+
+} // namespace lambert
