@@ -92,6 +92,7 @@ private:
 
     /// A logarithmic code k stands for scale · 2^(−k / 2048); the last one for 0.
     static constexpr int kFractionBits = 11;
+    static constexpr unsigned kFractionMask = (1U << kFractionBits) - 1U;
     static constexpr std::uint16_t kZeroCode = 0xFFFF;
     /// A step to the next patch in one byte: 0 for the very next; this one announces the patch's number in four bytes.
     static constexpr std::uint8_t kEscape = 0xFF;
@@ -139,8 +140,7 @@ private:
             if (row.counts)
                 use(patch, row.scale * code);
             else if (code != kZeroCode)
-                use(patch, row.scale * table.fraction[code & ((1U << kFractionBits) - 1U)] *
-                               table.integer[code >> kFractionBits]);
+                use(patch, row.scale * table.fraction[code & kFractionMask] * table.integer[code >> kFractionBits]);
         }
     }
 

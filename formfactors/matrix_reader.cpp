@@ -179,7 +179,7 @@ PatchMatrix readView3D(const fs::path& path, MatrixStorage storage) {
         if (error != std::errc() || stop != last || count < 1 || count > kMost || !header.starts_with("View3D"))
             lines.fail(fmt::format("\"{}\"", header.substr(0, 40)), "a header like \"View3D 3.2 0 1 0 N\"");
     }
-    // Numbers may be broken into lines anywhere.
+    // The format holds single precision. Numbers may be broken into lines anywhere.
     const auto advance = [&] {
         while (lines.atEnd()) lines.require('\0', "more numbers");
     };
@@ -187,13 +187,14 @@ PatchMatrix readView3D(const fs::path& path, MatrixStorage storage) {
     lines.require('\0', "areas");
     for (std::size_t i = 0; i < count; ++i) {
         advance();
-        result.area.push_back(lines.number(0.0, 1e30, "an area"));
+        result.area.push_back(static_cast<double>(lines.number(0.0F, 1e30F, "an area")));
     }
     RowsInOrder rows(count, storage);
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j < count; ++j) {
             advance();
-            rows.add(j, lines.factor());
+            rows.add(j, static_cast<double>(
+                            lines.number(0.0F, static_cast<float>(kLargestFactor), "a form factor, 0 to 1")));
         }
         rows.finishRow();
     }

@@ -98,6 +98,19 @@ TEST(FormFactorMatrix, EmptyRowsAreEmpty) {
     }
 }
 
+TEST(FormFactorMatrix, RowsSurviveAsBytes) {
+    for (const MatrixStorage storage : kStorages) {
+        FormFactorMatrix matrix(2, storage);
+        matrix.setRow(0, wideRow());
+        std::vector<std::byte> bytes;
+        matrix.appendBytes(0, bytes);
+        ASSERT_TRUE(matrix.setBytes(1, bytes));
+        EXPECT_EQ(matrix.row(1), matrix.row(0));
+        EXPECT_FALSE(matrix.setBytes(1, std::span(bytes).first(20)));
+        EXPECT_FALSE(matrix.setBytes(1, std::span(bytes).first(bytes.size() / 2)));
+    }
+}
+
 TEST(FormFactorMatrix, StoragesHaveNames) {
     EXPECT_EQ(storageByName("compact"), MatrixStorage::Compact);
     EXPECT_EQ(storageByName("half"), std::nullopt);
