@@ -1,6 +1,7 @@
 #include "baking/bake_scene.h"
 #include "baking/write_baked.h"
 #include "core/error.h"
+#include "formfactors/hemicube.h"
 #include "scene/example_scenes.h"
 
 #include <glm/geometric.hpp>
