@@ -5,6 +5,8 @@
 #include "core/process.h"
 #include "core/stopwatch.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -82,6 +84,8 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     if (!options.formFactors.file.empty())
         throw UsageError("--dry-run: predicts nothing of a bake from a matrix file (--form-factors)");
     result.plan = planTransport(options.formFactors.transport, meshed.mesh, *meshed.rays, progress);
+    if (!hasRows(result.plan.options.method))
+        throw UsageError(fmt::format("--dry-run: predicts nothing of {}", nameOf(result.plan.options.method)));
     const auto method = makeMethod(result.plan, meshed.mesh, *meshed.rays);
     const Pilot pilot = pilotRows(meshed, *method, progress);
 

@@ -29,7 +29,8 @@ struct TransportArguments {
     std::optional<int> resolution, hemicubes;
     std::optional<std::string> rotation;
     std::optional<std::uint32_t> lines;
-    std::optional<std::string> sampler;
+    std::optional<std::string> sampler, lineSet;
+    std::optional<double> formFactorError;
     std::string storage = "auto";
     double memoryLimit = 8.0 * 1073741824.0;
     bool repair = false;

@@ -51,6 +51,10 @@ void check(const FormFactorsArguments& a) {
     const Task task = taskOf(a);
     if (task == Task::Points) {
         if (!a.groupBy.empty()) throw UsageError("--points: has no groups (--group-by)");
+        if (const auto method = methodByName(a.transport.method.value_or("hemicube")); !hasPointRows(*method))
+            throw UsageError(fmt::format("--points: the method {} has no factors from points; allowed are hemicube, "
+                                         "hemisphere and local-lines",
+                                         nameOf(*method)));
         if (a.transport.repair || !a.transport.checkpoint.empty() || !a.transport.formFactors.empty())
             throw UsageError("--points: leave out --repair, --checkpoint and --form-factors, which are for patches");
         if (!a.output.empty() && matrixFormatOf(a.output) == MatrixFormat::View3D)

@@ -25,10 +25,14 @@ void refuseUnused(const TransportArguments& a, TransportMethod method) {
         if (a.lines) refuse("--lines");
         if (a.sampler) refuse("--sampler");
     }
+    if (a.lineSet && method != TransportMethod::GlobalLines) refuse("--line-set");
+    if (a.formFactorError && method != TransportMethod::ClosedForm) refuse("--form-factor-error");
+    if (!a.checkpoint.empty() && !hasRows(method)) refuse("--checkpoint");
 }
 
 void refuseBesideFile(const TransportArguments& a) {
-    if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || !a.checkpoint.empty())
+    if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || a.lineSet ||
+        a.formFactorError || !a.checkpoint.empty())
         throw UsageError("--form-factors: the file holds what was computed; leave out --method, its options and "
                          "--checkpoint");
 }
@@ -58,14 +62,27 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("HOW")
         ->group("Transport");
     command
-        .add_option("--lines", a.lines,
-                    "Local lines per patch, 1 to 16777216 [32768; less if time or memory ask for it]")
+        .add_option(
+            "--lines", a.lines,
+            "Local lines per patch, 1 to 16777216 [32768], or global lines in all, up to 4294967295 [an eighth of "
+            "the hemicubes' rays]; less if time or memory ask for it")
         ->type_name("N")
-        ->check(between(1.0, 16777216.0))
+        ->check(between(1.0, 4294967295.0))
         ->group("Transport");
     command.add_option("--sampler", a.sampler, "Of lines: random, stratified, halton or sobol [sobol]")
         ->check(CLI::IsMember({"random", "stratified", "halton", "sobol"}))
         ->type_name("SAMPLER")
+        ->group("Transport");
+    command
+        .add_option("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]")
+        ->check(CLI::IsMember({"chords", "bundles"}))
+        ->type_name("SET")
+        ->group("Transport");
+    command
+        .add_option("--form-factor-error", a.formFactorError,
+                    "Closed form: aimed at in partly hidden pairs, relative, 1e-8 to 0.1 [1e-4]")
+        ->check(between(1e-8, 0.1))
+        ->type_name("E")
         ->group("Transport");
     command
         .add_option(
@@ -111,6 +128,8 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     options.randomRotation = a.rotation.value_or("random") == "random";
     options.lines = a.lines;
     options.sampler = samplerByName(a.sampler.value_or("sobol")).value();
+    options.lineSet = a.lineSet.value_or("chords") == "bundles" ? LineSet::Bundles : LineSet::Chords;
+    options.error = a.formFactorError.value_or(options.error);
     options.seed = run.seed;
     options.storage = storageByName(a.storage); // none for auto
     options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
@@ -139,6 +158,10 @@ nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::
     json["rotation"] = resolution ? Json(source.transport.randomRotation ? "random" : "fixed") : Json(nullptr);
     json["lines"] = lines ? Json(*plan->options.lines) : Json(nullptr);
     json["sampler"] = lines ? Json(nameOf(source.transport.sampler)) : Json(nullptr);
+    const bool global = plan && method == TransportMethod::GlobalLines;
+    json["line_set"] = global ? Json(plan->options.lineSet == LineSet::Bundles ? "bundles" : "chords") : Json(nullptr);
+    json["form_factor_error"] =
+        plan && method == TransportMethod::ClosedForm ? Json(plan->options.error) : Json(nullptr);
     const auto storage = plan ? plan->options.storage : source.transport.storage;
     json["storage"] = nameOf(storage.value_or(MatrixStorage::Double));
     json["memory_limit"] = source.transport.memoryLimit;

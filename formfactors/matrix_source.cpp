@@ -93,21 +93,25 @@ FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh
 
 SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, const RayCaster& rays, Progress& progress) {
     SceneMatrix result;
+    std::vector<double> weights;
     if (!source.file.empty()) {
         progress.begin("read form factors", 0);
         result.matrix = importMatrix(source.file, mesh, source.transport);
+        weights = repairWeights(mesh);
         progress.end();
     } else {
         result.plan = planTransport(source.transport, mesh, rays, progress);
         if (!source.checkpoint.path.empty())
             result.journal = std::make_unique<MatrixJournal>(
                 source.checkpoint, matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
-        result.matrix = computeMatrix(*result.plan, mesh, rays, progress, result.journal.get());
+        ComputedMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.journal.get());
+        result.matrix = std::move(computed.matrix);
+        weights = std::move(computed.repairWeights);
     }
     if (source.repair) {
         requireRoomForRepair(result.matrix, source.transport);
         progress.begin("repair", 0);
-        result.repair = repair(result.matrix, mesh.area, repairWeights(mesh));
+        result.repair = repair(result.matrix, mesh.area, weights);
         progress.end();
     }
     return result;

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "formfactors/closed_form_method.h"
+#include "formfactors/global_lines.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/hemisphere.h"
 #include "formfactors/local_lines.h"
@@ -21,12 +23,14 @@ namespace {
 struct MethodTraits {
     TransportMethod method;
     std::string_view name;
-    bool resolution, lines;
+    bool resolution, lines, rows, pointRows;
 };
 
-constexpr std::array kMethods{MethodTraits{TransportMethod::Hemicube, "hemicube", true, false},
-                              MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false},
-                              MethodTraits{TransportMethod::LocalLines, "local-lines", false, true}};
+constexpr std::array kMethods{MethodTraits{TransportMethod::Hemicube, "hemicube", true, false, true, true},
+                              MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false, true, true},
+                              MethodTraits{TransportMethod::LocalLines, "local-lines", false, true, true, true},
+                              MethodTraits{TransportMethod::GlobalLines, "global-lines", false, true, false, false},
+                              MethodTraits{TransportMethod::ClosedForm, "closed-form", false, false, true, false}};
 
 const MethodTraits& traitsOf(TransportMethod method) {
     return *std::find_if(kMethods.begin(), kMethods.end(), [&](const MethodTraits& t) { return t.method == method; });
@@ -36,7 +40,7 @@ constexpr double kBytesPerRow = 96.0; ///< beside its factors, with the allocato
 constexpr double kPilotRays = 4e7;    ///< most of the rows that are computed to learn their length
 
 /// The efforts to choose from, largest first: resolutions or lines.
-std::vector<std::uint32_t> effortLadder(const TransportOptions& o) {
+std::vector<std::uint32_t> effortLadder(const TransportOptions& o, std::size_t patches) {
     std::vector<std::uint32_t> ladder;
     const auto largest = static_cast<std::uint32_t>(o.largestResolution);
     switch (o.method) {
@@ -48,6 +52,15 @@ std::vector<std::uint32_t> effortLadder(const TransportOptions& o) {
         break;
     case TransportMethod::LocalLines:
         for (std::uint32_t n = std::bit_floor(3 * largest * largest); n >= 512; n /= 2) ladder.push_back(n);
+        break;
+    case TransportMethod::GlobalLines: {
+        // A line serves several patches, both ways.
+        const double lines = std::min(o.mostRays, 3.0 * largest * largest * static_cast<double>(patches)) / 8.0;
+        ladder.push_back(std::bit_floor(static_cast<std::uint32_t>(std::clamp(lines, 65536.0, 2e9))));
+        break;
+    }
+    case TransportMethod::ClosedForm:
+        ladder.push_back(0);
         break;
     }
     return ladder;
@@ -82,6 +95,14 @@ double pilotEntriesPerRow(const FormFactorMethod& method, Progress& progress) {
     return sum / static_cast<double>(samples);
 }
 
+/// The same for any method; an upper bound where rows are not to be had one by one, or take long.
+double entriesPerRow(const TransportPlan& plan, const FormFactorMethod* method, std::size_t patches,
+                     Progress& progress) {
+    const auto count = static_cast<double>(patches);
+    if (!method) return std::min(count, 8.0 * static_cast<double>(*plan.options.lines) / count);
+    return plan.options.method == TransportMethod::ClosedForm ? count : pilotEntriesPerRow(*method, progress);
+}
+
 /// Chooses the storage and predicts its size; whether it fits.
 bool planMemory(TransportPlan& plan, double patches, double entriesPerRow) {
     const auto limit = static_cast<double>(plan.options.memoryLimit);
@@ -112,6 +133,8 @@ std::vector<std::string> methodNames() {
 
 bool hasResolution(TransportMethod method) { return traitsOf(method).resolution; }
 bool hasLines(TransportMethod method) { return traitsOf(method).lines; }
+bool hasRows(TransportMethod method) { return traitsOf(method).rows; }
+bool hasPointRows(TransportMethod method) { return traitsOf(method).pointRows; }
 
 std::string TransportPlan::effort() const {
     std::string text(nameOf(options.method));
@@ -119,7 +142,11 @@ std::string TransportPlan::effort() const {
         text += fmt::format(", resolution {}", *options.resolution);
         if (options.perPatch > 1) text += fmt::format(", {} per patch", options.perPatch);
     }
-    if (hasLines(options.method)) text += fmt::format(", {} lines per patch", *options.lines);
+    if (hasLines(options.method))
+        text +=
+            fmt::format(", {} {}{}", *options.lines, options.lineSet == LineSet::Bundles ? "lines in bundles" : "lines",
+                        hasRows(options.method) ? " per patch" : "");
+    if (options.method == TransportMethod::ClosedForm) text += fmt::format(", error {:g}", options.error);
     return text;
 }
 
@@ -134,8 +161,9 @@ void checkTransport(const TransportOptions& o) {
         if (!cube && (*o.resolution < 4 || *o.resolution > 4096 || *o.resolution % 4 != 0))
             refuse("--resolution", *o.resolution, "multiples of 4 from 4 to 4096 for hemispheres");
     }
-    if (hasLines(o.method) && o.lines && (*o.lines < 1 || *o.lines > 1U << 24))
+    if (o.method == TransportMethod::LocalLines && o.lines && (*o.lines < 1 || *o.lines > 1U << 24))
         refuse("--lines", *o.lines, "1 to 16777216 per patch");
+    if (!(o.error >= 1e-8 && o.error <= 0.1)) refuse("--form-factor-error", o.error, "1e-8 to 0.1");
     if (o.perPatch < 1 || o.perPatch > 1024) refuse("--hemicubes", o.perPatch, "1 to 1024");
 }
 
@@ -144,18 +172,19 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
     checkTransport(options);
     const auto patches = static_cast<double>(mesh.size());
     const bool given = hasResolution(options.method) ? options.resolution.has_value() : options.lines.has_value();
-    const std::vector<std::uint32_t> ladder = given ? std::vector<std::uint32_t>{0} : effortLadder(options);
+    const std::vector<std::uint32_t> ladder =
+        given ? std::vector<std::uint32_t>{0} : effortLadder(options, mesh.size());
     for (const std::uint32_t effort : ladder) {
         TransportPlan plan = withEffort(options, effort);
-        const auto method = makeMethod(plan, mesh, rays);
-        plan.rays = method->raysPerRow() * mesh.size();
+        const auto method = hasRows(options.method) ? makeMethod(plan, mesh, rays) : nullptr;
+        plan.rays = method ? method->raysPerRow() * mesh.size() : *plan.options.lines;
         const bool last = effort == ladder.back();
         if (!last && static_cast<double>(plan.rays) > options.mostRays) continue;
         // A dense matrix as float, or as asked for, needs no closer look.
         if (planMemory(plan, patches, patches) && (options.storage || plan.options.storage == MatrixStorage::Float))
             return plan;
         plan.options.storage = options.storage;
-        if (planMemory(plan, patches, pilotEntriesPerRow(*method, progress))) return plan;
+        if (planMemory(plan, patches, entriesPerRow(plan, method.get(), mesh.size(), progress))) return plan;
         if (last)
             throw SystemError(fmt::format(
                 "the form factors of {} patches would take about {:.2g} GiB ({}), --memory-limit allows {:.2g}; allow "
@@ -177,14 +206,26 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
         return std::make_unique<Hemisphere>(
             mesh, rays, HemisphereOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
     case TransportMethod::LocalLines:
+        return std::make_unique<LocalLines>(mesh, rays, LocalLinesOptions{o.lines.value(), o.sampler, o.seed});
+    case TransportMethod::ClosedForm:
+        return std::make_unique<ClosedForm>(mesh, rays, ClosedFormOptions{o.error});
+    case TransportMethod::GlobalLines:
         break;
     }
-    return std::make_unique<LocalLines>(mesh, rays, LocalLinesOptions{o.lines.value(), o.sampler, o.seed});
+    throw UsageError("global-lines: computes no single rows");
 }
 
-FormFactorMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                               Progress& progress, MatrixJournal* journal) {
-    return computeMatrix(*makeMethod(plan, mesh, rays), plan.options.storage.value(), progress, journal);
+ComputedMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                             Progress& progress, MatrixJournal* journal) {
+    const TransportOptions& o = plan.options;
+    const MatrixStorage storage = o.storage.value();
+    if (hasRows(o.method))
+        return {computeMatrix(*makeMethod(plan, mesh, rays), storage, progress, journal), repairWeights(mesh)};
+    const LineCaster caster(rays.scene());
+    GlobalLineOptions options{.lines = o.lines.value(), .set = o.lineSet, .sampler = o.sampler, .seed = o.seed};
+    GlobalLineCounts counts(mesh.size());
+    GlobalLines(mesh, caster, options).trace(counts, progress);
+    return {counts.matrix(storage, progress), counts.repairWeights(mesh.area)};
 }
 
 std::vector<double> repairWeights(const PatchMesh& mesh) {

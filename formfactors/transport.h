@@ -4,6 +4,7 @@
 #include "core/sample_points.h"
 #include "formfactors/form_factor_matrix.h"
 #include "formfactors/form_factor_method.h"
+#include "formfactors/isotropic_lines.h"
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
 
@@ -20,13 +21,15 @@ class MatrixJournal;
 
 /// The one place where a way to compute form factors is made from its name and options: what a new method needs beside its
 /// own files is a line in each table and switch of transport.cpp.
-enum class TransportMethod { Hemicube, Hemisphere, LocalLines };
+enum class TransportMethod { Hemicube, Hemisphere, LocalLines, GlobalLines, ClosedForm };
 
 std::optional<TransportMethod> methodByName(std::string_view name);
 std::string_view nameOf(TransportMethod method);
 std::vector<std::string> methodNames();
 bool hasResolution(TransportMethod method); ///< TransportOptions::resolution and below count
 bool hasLines(TransportMethod method);      ///< TransportOptions::lines and below count
+bool hasRows(TransportMethod method);       ///< computes row by row, see makeMethod
+bool hasPointRows(TransportMethod method);  ///< see FormFactorMethod::pointRow
 
 struct TransportOptions {
     TransportMethod method = TransportMethod::Hemicube;
@@ -35,8 +38,13 @@ struct TransportOptions {
     int perPatch = 1;              //!< hemicubes or hemispheres per patch
     bool randomRotation = true;    //!< of these
 
-    std::optional<std::uint32_t> lines; //!< per patch, 1 to 2^24; none: a power of two by the bounds below
-    Sampler sampler = Sampler::Sobol;   //!< of lines
+    std::optional<std::uint32_t>
+        lines; //!< local: per patch, global: in all; see there; none: a power of two by the bounds
+               //!< below
+    Sampler sampler = Sampler::Sobol;  //!< of lines
+    LineSet lineSet = LineSet::Chords; //!< of global lines
+
+    double error = 1e-4; //!< of the closed form, see there
 
     std::uint64_t seed = 1;
     std::optional<MatrixStorage> storage;               //!< none: float while it fits the memory, else compact
@@ -63,15 +71,20 @@ void checkTransport(const TransportOptions& options);
 TransportPlan planTransport(const TransportOptions& options, const PatchMesh& mesh, const RayCaster& rays,
                             Progress& progress);
 
-/// A planned method that computes rows. `mesh` and `rays` must outlive it.
+/// A planned method that computes rows (see hasRows). `mesh` and `rays` must outlive it.
 std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays);
 
-/// The matrix. With a journal, rows that it holds are taken from it and all others entered.
-/// Throws Cancelled; of the journal InputError and SystemError.
-FormFactorMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                               Progress& progress, MatrixJournal* journal = nullptr);
+struct ComputedMatrix {
+    FormFactorMatrix matrix;
+    std::vector<double> repairWeights; //!< #patches, see repair()
+};
 
-/// Weights of the rows for repair(): #patches.
+/// The matrix. With a journal, which only methods with rows can have, rows that it holds are taken from it and all others
+/// entered. Throws Cancelled; of the journal SystemError.
+ComputedMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                             Progress& progress, MatrixJournal* journal = nullptr);
+
+/// Weights of rows that are computed alike.
 std::vector<double> repairWeights(const PatchMesh& mesh);
 
 } // namespace lambert

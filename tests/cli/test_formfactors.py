@@ -23,8 +23,10 @@ CORNELL = DATA / "cornell_box.obj"
 CUBE = DATA / "cube6.obj"  # a closed unit cube, a material per face
 SQUARES = DATA / "parallel_squares.obj"
 SIGMA = 5.670374419e-8
-METHODS = ("hemicube", "hemisphere", "local-lines")
-EFFORT = {"hemicube": ("--resolution", 64), "hemisphere": ("--resolution", 64), "local-lines": ("--lines", 4096)}
+METHODS = ("hemicube", "hemisphere", "local-lines", "global-lines", "closed-form")
+WITH_POINTS = METHODS[:3]
+EFFORT = {"hemicube": ("--resolution", 64), "hemisphere": ("--resolution", 64), "local-lines": ("--lines", 4096),
+          "global-lines": ("--lines", 2000000), "closed-form": ()}
 
 
 class FormFactorsTest(ProgramTest):
@@ -46,13 +48,15 @@ class Report(FormFactorsTest):
             with self.subTest(method):
                 report = self.factors(CORNELL, "--patches", 300, "--method", method, *EFFORT[method])
                 self.assertEqual(report["method"], method)
-                self.assertGreater(report["rays"], 0)
-                self.assertLess(report["row_sums"]["worst_error"], 1e-6)  # one point's rays close, rounded to float
+                self.assertEqual(report["rays"] > 0, method != "closed-form")
+                # Rays close, rounded to float; the closed form has an error of its own, 1e-4 where pairs are partly hidden.
+                self.assertLess(report["row_sums"]["worst_error"], 1e-3 if method == "closed-form" else 1e-6)
                 self.assertIsNone(report["repair"])
                 repaired = self.factors(CORNELL, "--patches", 300, "--method", method, *EFFORT[method], "--repair")
                 self.assertLess(repaired["row_sums"]["worst_error"], 1.1e-6)  # 1e-6 and rounding
                 self.assertLess(repaired["reciprocity"]["rms_error"], 1e-6)
-                self.assertGreater(report["reciprocity"]["rms_error"], 1e-3)
+                if method in WITH_POINTS:  # others are reciprocal, or nearly so, as they are
+                    self.assertGreater(report["reciprocity"]["rms_error"], 1e-3)
                 self.assertGreater(repaired["repair"]["largest_correction"], 0)
 
     def test_repaired_bakes_balance_their_energy(self):
@@ -68,6 +72,7 @@ class Report(FormFactorsTest):
                                                    self.folder / "m.npy"))
         self.refused(USAGE, CUBE, "--resolution", 63, "-o", self.folder / "m.npy")
         self.refused(USAGE, CUBE)
+        self.refused(USAGE, CUBE, "--method", "global-lines", "--checkpoint", self.folder / "c", "-o", self.folder / "m.npy")
         self.refused(USAGE, CUBE, "-o", self.folder / "m.dat")
         self.refused(USAGE, CUBE, "--resume", "-o", self.folder / "m.npy")
 
@@ -261,7 +266,7 @@ class Points(FormFactorsTest):
         # F = 1/(2π) [X/√(1+X²) atan(Y/√(1+X²)) + Y/√(1+Y²) atan(X/√(1+Y²))] with X = Y = 1.
         exact = 4 * (2 / math.sqrt(2) * math.atan(1 / math.sqrt(2))) / (2 * math.pi)
         points = self.write("points.csv", "0.5,0.5,0.5,0,1,0\n0.5,0.5,0.5,0,2,0\n")
-        for method in METHODS:
+        for method in WITH_POINTS:
             with self.subTest(method):
                 table = self.folder / "out.csv"
                 report = self.factors(CUBE, "--patches", 0, "--method", method, "--points", points, "-o", table)
