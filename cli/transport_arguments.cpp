@@ -48,7 +48,7 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
         ->group("Transport");
     command
         .add_option("--resolution", a.resolution,
-                    "Pixels along the edge of a hemicube, even, 16 to 4096 [128], or of a hemisphere's square, a "
+                    "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a "
                     "multiple of 4 [220]; less if time or memory ask for it")
         ->type_name("R")
         ->check(between(4.0, 4096.0))

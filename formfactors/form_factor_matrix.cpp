@@ -20,6 +20,11 @@ constexpr std::array<StorageFacts, 3> kStorages{{
     {"compact", MatrixStorage::Compact, 3.01} // some steps need five bytes
 }};
 
+const StorageFacts& factsOf(MatrixStorage storage) {
+    return *std::find_if(kStorages.begin(), kStorages.end(),
+                         [&](const StorageFacts& known) { return known.storage == storage; });
+}
+
 double entrySum(const FormFactorRow& row) {
     double sum = 0.0;
     for (const FormFactor& entry : row.entries) sum += entry.value;
@@ -36,15 +41,9 @@ std::optional<MatrixStorage> storageByName(std::string_view name) {
     return std::nullopt;
 }
 
-std::string_view nameOf(MatrixStorage storage) {
-    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return name.second == storage; })->first;
-}
+std::string_view nameOf(MatrixStorage storage) { return factsOf(storage).name; }
 
-double bytesPerFactor(MatrixStorage storage) {
-    return std::find_if(kStorages.begin(), kStorages.end(),
-                        [&](const StorageFacts& known) { return known.storage == storage; })
-        ->bytes;
-}
+double bytesPerFactor(MatrixStorage storage) { return factsOf(storage).bytes; }
 
 FormFactorMatrix::FormFactorMatrix(std::size_t patches, MatrixStorage storage) : storage_(storage), rows_(patches) {}
 

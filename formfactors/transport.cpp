@@ -156,8 +156,8 @@ void checkTransport(const TransportOptions& o) {
     };
     if (hasResolution(o.method) && o.resolution) {
         const bool cube = o.method == TransportMethod::Hemicube;
-        if (cube && (*o.resolution < 16 || *o.resolution > 4096 || *o.resolution % 2 != 0))
-            refuse("--resolution", *o.resolution, "even numbers from 16 to 4096");
+        if (cube && (*o.resolution < 4 || *o.resolution > 4096 || *o.resolution % 2 != 0))
+            refuse("--resolution", *o.resolution, "even numbers from 4 to 4096");
         if (!cube && (*o.resolution < 4 || *o.resolution > 4096 || *o.resolution % 4 != 0))
             refuse("--resolution", *o.resolution, "multiples of 4 from 4 to 4096 for hemispheres");
     }

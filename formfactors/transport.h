@@ -50,8 +50,8 @@ struct TransportOptions {
     std::optional<MatrixStorage> storage;               //!< none: float while it fits the memory, else compact
     std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< bytes for the form factors
 
-    int largestResolution =
-        128;                 //!< of hemicubes where none is given, 16 to 4096; other methods take about as many rays
+    /// Of hemicubes where none is given, 16 to 4096; other methods take about as many rays.
+    int largestResolution = 128;
     double mostRays = 1.3e9; //!< in all, where effort is not given: a few minutes on two cores
 };
 
