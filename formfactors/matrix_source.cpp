@@ -104,7 +104,7 @@ SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, cons
         if (!source.checkpoint.path.empty())
             result.journal = std::make_unique<MatrixJournal>(
                 source.checkpoint, matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
-        ComputedMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.journal.get());
+        TransportMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.journal.get());
         result.matrix = std::move(computed.matrix);
         weights = std::move(computed.repairWeights);
     }

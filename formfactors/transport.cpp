@@ -215,8 +215,8 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
     throw UsageError("global-lines: computes no single rows");
 }
 
-ComputedMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                             Progress& progress, MatrixJournal* journal) {
+TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                              Progress& progress, MatrixJournal* journal) {
     const TransportOptions& o = plan.options;
     const MatrixStorage storage = o.storage.value();
     if (hasRows(o.method))

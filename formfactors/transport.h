@@ -74,15 +74,15 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
 /// A planned method that computes rows (see hasRows). `mesh` and `rays` must outlive it.
 std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays);
 
-struct ComputedMatrix {
+struct TransportMatrix {
     FormFactorMatrix matrix;
     std::vector<double> repairWeights; //!< #patches, see repair()
 };
 
 /// The matrix. With a journal, which only methods with rows can have, rows that it holds are taken from it and all others
 /// entered. Throws Cancelled; of the journal SystemError.
-ComputedMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                             Progress& progress, MatrixJournal* journal = nullptr);
+TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
+                              Progress& progress, MatrixJournal* journal = nullptr);
 
 /// Weights of rows that are computed alike.
 std::vector<double> repairWeights(const PatchMesh& mesh);

@@ -16,7 +16,7 @@ MeshedScene meshed(const Scene& scene, std::size_t patches) {
     Progress progress;
     MeshOptions options;
     options.patches = patches;
-    return meshUnlitScene(scene, options, progress);
+    return meshScene(scene, options, progress);
 }
 
 /// Reflectances that differ, and a lamp on one side: what a patch gets from where matters.
