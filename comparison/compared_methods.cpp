@@ -2,11 +2,6 @@
 
 #include "comparison/figure_text.h"
 #include "core/error.h"
-#include "formfactors/closed_form_method.h"
-#include "formfactors/global_lines.h"
-#include "formfactors/hemicube.h"
-#include "formfactors/hemisphere.h"
-#include "formfactors/local_lines.h"
 
 #include <fmt/format.h>
 
@@ -16,51 +11,35 @@
 
 namespace lambert {
 
-namespace {
-
-ComputedMatrix allRows(const FormFactorMethod& method, MatrixStorage storage, Progress& progress) {
-    return {computeMatrix(method, storage, progress), method.raysPerRow() * method.patchCount()};
+TransportOptions ComparedMethod::options(double effort, std::uint64_t seed, MatrixStorage storage) const {
+    TransportOptions options;
+    options.method = method;
+    options.seed = seed;
+    options.storage = storage;
+    if (hasResolution(method)) options.resolution = static_cast<int>(effort);
+    if (hasLines(method)) options.lines = static_cast<std::uint32_t>(effort);
+    if (method == TransportMethod::ClosedForm) options.error = effort;
+    return options;
 }
 
-ComputedMatrix hemicube(const MeshedScene& s, double effort, std::uint64_t seed, MatrixStorage storage,
-                        Progress& progress) {
-    return allRows(Hemicube(s.mesh, *s.rays, {.resolution = static_cast<int>(effort), .seed = seed}), storage,
-                   progress);
+ComputedMatrix ComparedMethod::compute(const MeshedScene& scene, double effort, std::uint64_t seed,
+                                       MatrixStorage storage, Progress& progress) const {
+    const TransportPlan plan = planTransport(options(effort, seed, storage), scene.mesh, *scene.rays, progress);
+    return {computeMatrix(plan, scene.mesh, *scene.rays, progress).matrix, plan.rays};
 }
-
-ComputedMatrix hemisphere(const MeshedScene& s, double effort, std::uint64_t seed, MatrixStorage storage,
-                          Progress& progress) {
-    return allRows(Hemisphere(s.mesh, *s.rays, {.resolution = static_cast<int>(effort), .seed = seed}), storage,
-                   progress);
-}
-
-ComputedMatrix localLines(const MeshedScene& s, double effort, std::uint64_t seed, MatrixStorage storage,
-                          Progress& progress) {
-    return allRows(LocalLines(s.mesh, *s.rays, {.lines = static_cast<std::uint32_t>(effort), .seed = seed}), storage,
-                   progress);
-}
-
-ComputedMatrix globalLines(const MeshedScene& s, double effort, std::uint64_t seed, MatrixStorage storage,
-                           Progress& progress) {
-    const LineCaster caster(*s.scene);
-    const GlobalLines lines(s.mesh, caster, {.lines = static_cast<std::uint32_t>(effort), .seed = seed});
-    return {lines.matrix(storage, progress), static_cast<std::uint64_t>(effort)};
-}
-
-ComputedMatrix closedForm(const MeshedScene& s, double effort, std::uint64_t, MatrixStorage storage,
-                          Progress& progress) {
-    return allRows(ClosedForm(s.mesh, *s.rays, {.error = effort}), storage, progress);
-}
-
-} // namespace
 
 std::span<const ComparedMethod> comparedMethods() {
-    static const std::vector<ComparedMethod> kMethods{
-        {"hemicube", "resolution", false, {16, 32, 64, 128}, true, 16, 4096, 2, hemicube},
-        {"hemisphere", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 4, hemisphere},
-        {"local-lines", "lines per patch", true, {256, 1024, 4096, 16384}, true, 1, 1 << 24, 1, localLines},
-        {"global-lines", "lines in all", true, {250e3, 1e6, 4e6, 16e6}, true, 1, 4294967295.0, 1, globalLines},
-        {"closed-form", "error", false, {0.1, 0.01, 0.001}, false, 1e-8, 0.1, 0, closedForm}};
+    static const std::vector<ComparedMethod> kMethods = [] {
+        using enum TransportMethod;
+        std::vector<ComparedMethod> methods{
+            {Hemicube, "", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 2},
+            {Hemisphere, "", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 4},
+            {LocalLines, "", "lines per patch", true, {256, 1024, 4096, 16384}, true, 1, 1 << 24, 1},
+            {GlobalLines, "", "lines in all", true, {250e3, 1e6, 4e6, 16e6}, true, 1, 4294967295.0, 1},
+            {ClosedForm, "", "error", false, {0.1, 0.01, 0.001}, false, 1e-8, 0.1, 0}};
+        for (ComparedMethod& method : methods) method.name = nameOf(method.method);
+        return methods;
+    }();
     return kMethods;
 }
 

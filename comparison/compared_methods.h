@@ -2,6 +2,7 @@
 
 #include "baking/bake_scene.h"
 #include "core/progress.h"
+#include "formfactors/transport.h"
 
 #include <cstdint>
 #include <span>
@@ -19,6 +20,7 @@ struct ComputedMatrix {
 
 /// A way to compute form factors with one number that says how much work it puts in.
 struct ComparedMethod {
+    TransportMethod method;
     std::string name;           //!< as for --method
     std::string effortName;     //!< what the number counts, such as "lines per patch"
     bool numberFirst;           //!< "4096 lines per patch" rather than "resolution 64"
@@ -26,8 +28,12 @@ struct ComparedMethod {
     bool random;                //!< other seeds give other factors
     double lowest, highest;     //!< efforts that are allowed
     double multiple;            //!< of which an effort is a whole multiple; 0: of nothing
-    ComputedMatrix (*compute)(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,
-                              Progress& progress); //!< throws Cancelled
+
+    /// Its options with this effort, all others at their defaults.
+    TransportOptions options(double effort, std::uint64_t seed, MatrixStorage storage) const;
+    /// Throws Cancelled; SystemError if the matrix does not fit the options' memory limit.
+    ComputedMatrix compute(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,
+                           Progress& progress) const;
 };
 
 /// All there are.

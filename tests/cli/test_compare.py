@@ -192,7 +192,7 @@ class WhatIsWrong(CompareTest):
         self.refuse(USAGE, "no method \"cube\": there are hemicube", box, *out, "--methods", "hemicube,cube")
         self.refuse(USAGE, "named twice", box, *out, "--methods", "hemicube,hemicube")
         self.refuse(USAGE, "METHOD=EFFORT", box, *out, "--efforts", "16")
-        self.refuse(USAGE, "found \"17\", allowed is 16 to 4096 in steps of 2", box, *out, "--efforts", "hemicube=17")
+        self.refuse(USAGE, "found \"17\", allowed is 4 to 4096 in steps of 2", box, *out, "--efforts", "hemicube=17")
         self.refuse(USAGE, "not among", box, *out, "--methods", "hemicube", "--efforts", "local-lines=16")
         self.refuse(USAGE, "not convex", box, *out, "--patches", "60", "--reference", "exact")
         self.refuse(USAGE, "METHOD:EFFORT", box, *out, "--reference", "best")
