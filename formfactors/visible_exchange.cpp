@@ -16,12 +16,12 @@ namespace lambert {
 namespace {
 
 /// With more lines than these the cells are left to subdivision alone.
-constexpr std::size_t kMostCuts = 32;
-constexpr std::size_t kMostCells = 256;
+constexpr std::size_t kMostCuts = 16;
+constexpr std::size_t kMostCells = 64;
 /// A cell is halved at most so often.
-constexpr int kMostHalvings = 14;
+constexpr int kMostHalvings = 6;
 /// Parts of the unoccluded exchange below this one are found to the absolute error of it.
-constexpr double kSmallestShare = 0.001;
+constexpr double kSmallestShare = 0.01;
 /// Smaller parts are gaps that single precision makes.
 constexpr double kRounding = 1e-6;
 
