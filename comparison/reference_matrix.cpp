@@ -22,6 +22,8 @@ constexpr double kAreaTolerance = 1e-3;   ///< relative, between a file's patche
 
 /// Of the closed form where nothing is exact, in partly hidden factors: a tenth of the best that is compared.
 constexpr double kReferenceError = 1e-4;
+constexpr double kReferenceLines = 131072; // per patch, twice
+constexpr std::size_t kMostIntegrated = 100; // polygons
 
 std::vector<std::vector<glm::dvec3>> polygons(const PatchMesh& mesh) {
     std::vector<std::vector<glm::dvec3>> result(mesh.size());
@@ -146,6 +148,9 @@ ReferenceMatrix makeReference(const ReferenceChoice& choice, const MeshedScene& 
         return {"exact (closed form of every pair)", unoccludedMatrix(scene.mesh, progress), 0.0};
     if (choice.kind == Kind::Exact)
         throw UsageError("--reference exact: the scene is not convex, so that some of its surfaces may hide others");
+    // Behind much furniture integration takes longer than counting does.
+    if (scene.scene->polygons.size() > kMostIntegrated)
+        return byMethod(comparedMethod("local-lines"), kReferenceLines, scene, seed, threshold, progress);
     return byMethod(comparedMethod("closed-form"), kReferenceError, scene, seed, threshold, progress);
 }
 
