@@ -134,7 +134,7 @@ private:
             const Target& to = clusters().targets()[cluster.target[lane]];
             const bool front = exchange[lane] > 0.0;
             double value = std::abs(exchange[lane]);
-            if (!front && !to.blackBack) continue;
+            if (front ? to.frontHidden : !to.blackBack) continue;
             if (occluded) value = visiblePart(to, front, value, firstOccluder);
             add(to, front, value);
         }
@@ -155,7 +155,7 @@ private:
         const auto over = cornerHeights(from_.plane, to.polygon.points());
         if (over[1] <= t) return;
         const auto here = cornerHeights(to.plane, from_.polygon.points());
-        if (here[1] > t) addSide(to, true, firstOccluder);
+        if (here[1] > t && !to.frontHidden) addSide(to, true, firstOccluder);
         if (here[0] < -t && to.blackBack) addSide(to, false, firstOccluder);
     }
 

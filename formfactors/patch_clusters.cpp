@@ -1,5 +1,6 @@
 #include "formfactors/patch_clusters.h"
 
+#include "formfactors/coplanar_contacts.h"
 #include "formfactors/quadrature.h"
 
 #include <algorithm>
@@ -19,22 +20,37 @@ Target makeTarget(std::span<const glm::dvec3> corners, const glm::dvec3& normal)
     return target;
 }
 
+bool isSeen(const Target& target) { return !target.frontHidden || target.blackBack; }
+
+Target partOf(const Target& whole, const ConvexPolygon& polygon) {
+    Target part = makeTarget(polygon.points(), whole.plane.normal);
+    part.plane = whole.plane;
+    part.opacity = whole.opacity;
+    part.patch = whole.patch;
+    part.frontHidden = whole.frontHidden;
+    part.blackBack = whole.blackBack;
+    return part;
+}
+
 } // namespace
 
 PatchClusters::PatchClusters(const Scene& scene, const PatchMesh& mesh, const Occluders& occluders,
                              Directions& directions, double tolerance)
     : tolerance_(tolerance) {
     std::vector<glm::dvec3> corners;
+    std::vector<std::uint32_t> occluderOf; // per target
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         corners.clear();
         for (int k = 0; k < mesh.cornerCount(i); ++k) corners.emplace_back(mesh.position(i, k));
         Target& target = targets_.emplace_back(makeTarget(corners, glm::normalize(glm::dvec3(mesh.normal[i]))));
         target.patch = static_cast<std::uint32_t>(i);
         target.blackBack = scene.polygons[mesh.polygon[i]].backMaterial == kNone;
-        takePlane(target, occluders.list[occluders.ofPolygon[mesh.polygon[i]]].plane);
+        occluderOf.push_back(occluders.ofPolygon[mesh.polygon[i]]);
+        takePlane(target, occluders.list[occluderOf.back()].plane);
         if (!mesh.opacity.empty()) target.opacity = static_cast<double>(mesh.opacity[i]);
     }
-    for (const Polygon& polygon : scene.polygons) {
+    for (std::size_t p = 0; p < scene.polygons.size(); ++p) {
+        const Polygon& polygon = scene.polygons[p];
         if (!isOccluder(scene, polygon)) continue;
         corners.clear();
         for (int k = 0; k < polygon.size(); ++k) corners.emplace_back(corner(scene, polygon, k));
@@ -42,21 +58,66 @@ PatchClusters::PatchClusters(const Scene& scene, const PatchMesh& mesh, const Oc
             targets_.emplace_back(makeTarget(corners, glm::normalize(glm::dvec3(areaVector(scene, polygon)))));
         target.patch = kNone;
         target.blackBack = true;
+        occluderOf.push_back(occluders.ofPolygon[p]);
     }
 
     for (Target& target : targets_)
         if (target.plane.direction < 0) directions.enter(target.plane);
     directions_ = directions.list();
 
-    std::vector<std::uint32_t> order(targets_.size());
-    std::iota(order.begin(), order.end(), 0U);
+    std::vector<std::uint32_t> order = divideAtContacts(occluderOf, occluders);
     glm::dvec3 lower(std::numeric_limits<double>::max()), upper = -lower;
     for (const Target& t : targets_) {
         lower = glm::min(lower, t.centre);
         upper = glm::max(upper, t.centre);
     }
     // Targets that face elsewhere are as far as the other end of the scene.
-    if (!targets_.empty()) build(order, 0, order.size(), glm::distance(lower, upper));
+    if (!order.empty()) build(order, 0, order.size(), glm::distance(lower, upper));
+}
+
+std::vector<std::uint32_t> PatchClusters::divideAtContacts(const std::vector<std::uint32_t>& occluderOf,
+                                                           const Occluders& occluders) {
+    const auto contacts = findCoplanarContacts(occluders.list, tolerance_);
+    std::vector<std::uint32_t> order;
+    std::vector<Target> parts, next;
+    std::vector<ConvexPolygon> outside;
+    ConvexPolygon covered;
+    for (std::uint32_t t = 0; t < occluderOf.size(); ++t) {
+        parts.assign(1, targets_[t]);
+        for (const CoplanarContact& contact : contacts[occluderOf[t]]) {
+            const Occluder& cover = occluders.list[contact.occluder];
+            next.clear();
+            for (const Target& part : parts) {
+                outside.clear();
+                divideByCover(part.polygon, cover, tolerance_, outside, covered);
+                for (const ConvexPolygon& polygon : outside) next.push_back(partOf(part, polygon));
+                if (covered.empty()) continue;
+                Target under = partOf(part, covered);
+                // The second side of a polygon faces away from what stands against the first.
+                const bool second = glm::dot(part.plane.normal, occluders.list[occluderOf[t]].plane.normal) < 0.0;
+                const bool front = contact.hides == CoveredSide::Both ||
+                                   contact.hides == (second ? CoveredSide::Back : CoveredSide::Front);
+                const bool back = contact.hides == CoveredSide::Both ||
+                                  contact.hides == (second ? CoveredSide::Front : CoveredSide::Back);
+                under.frontHidden = under.frontHidden || front;
+                under.blackBack = under.blackBack && !back;
+                next.push_back(under);
+            }
+            parts.swap(next);
+        }
+        if (parts.size() == 1) {
+            targets_[t].frontHidden = parts[0].frontHidden;
+            targets_[t].blackBack = parts[0].blackBack;
+            if (isSeen(targets_[t])) order.push_back(t);
+            continue;
+        }
+        for (const Target& part : parts) {
+            if (!isSeen(part)) continue;
+            order.push_back(static_cast<std::uint32_t>(targets_.size()));
+            targets_.push_back(part);
+        }
+    }
+    return order;
 }
 
 void PatchClusters::takePlane(Target& target, const Plane& plane) const {

@@ -11,15 +11,16 @@
 
 namespace lambert {
 
-/// A polygon that receives light: a patch, or a polygon that only blocks.
+/// A polygon that receives light: a patch, a polygon that only blocks, or a part of either.
 struct Target {
-    ConvexPolygon polygon; //!< three or four corners
-    Plane plane;           //!< unit normal, to the front
+    ConvexPolygon polygon;
+    Plane plane; //!< unit normal, to the front
     glm::dvec3 centre{0.0};
-    double radius = 0.0;    //!< of the corners around the centre
-    double opacity = 1.0;   //!< share that is not a hole
-    std::uint32_t patch;    //!< what its front is; kNone: black
-    bool blackBack = false; //!< its back is no patch
+    double radius = 0.0;      //!< of the corners around the centre
+    double opacity = 1.0;     //!< share that is not a hole
+    std::uint32_t patch;      //!< what its front is; kNone: black
+    bool frontHidden = false; //!< something stands against it
+    bool blackBack = false;   //!< its back is no patch, and not hidden
 };
 
 /// Targets in groups of eight neighbours, laid out for vector code, in a tree.
@@ -57,13 +58,17 @@ public:
     PatchClusters(const Scene& scene, const PatchMesh& mesh, const Occluders& occluders, Directions& directions,
                   double tolerance);
 
-    const std::vector<Target>& targets() const { return targets_; } ///< patches first, in their order
+    /// Patches first, in their order and whole; then what else receives light. In the clusters are, instead of targets
+    /// of which something covers a part, their parts.
+    const std::vector<Target>& targets() const { return targets_; }
     const std::vector<Cluster>& clusters() const { return clusters_; }
     const std::vector<Node>& nodes() const { return nodes_; } ///< the root first; empty without targets
 
 private:
     std::uint32_t build(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end, double normalWeight);
     void takePlane(Target& target, const Plane& plane) const;
+    std::vector<std::uint32_t> divideAtContacts(const std::vector<std::uint32_t>& occluderOf,
+                                                const Occluders& occluders);
     void addCluster(const std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end);
 
     std::span<const glm::dvec3> directions_;

@@ -4,9 +4,9 @@
 
 #include "formfactors/closed_form.h"
 #include "formfactors/gauss_exchange.h"
+#include "formfactors/occluder_tests.h"
 #include "formfactors/quadrature.h"
-
-#include <glm/vec2.hpp>
+#include "formfactors/visible_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace lambert {
 namespace {
 
 /// With more lines than these the cells are left to subdivision alone.
-constexpr std::size_t kMostCuts = 16;
-constexpr std::size_t kMostCells = 64;
+constexpr std::size_t kMostCuts = 32;
+constexpr std::size_t kMostCells = 512;
 /// A cell is halved at most so often.
 constexpr int kMostHalvings = 6;
 /// Parts of the unoccluded exchange below this one are found to the absolute error of it.
@@ -25,86 +25,49 @@ constexpr double kSmallestShare = 0.01;
 /// Smaller parts are gaps that single precision makes.
 constexpr double kRounding = 1e-6;
 
-bool allAbove(const Plane& plane, std::span<const glm::dvec3> points, double height) {
-    return std::all_of(points.begin(), points.end(), [&](const auto& p) { return plane.height(p) >= height; });
-}
-bool allBelow(const Plane& plane, std::span<const glm::dvec3> points, double height) {
-    return std::all_of(points.begin(), points.end(), [&](const auto& p) { return plane.height(p) <= height; });
-}
-
-/// Whether every line from one polygon to the other crosses the occluder's plane beside it (Clear) or in it (Hidden).
-/// For polygons on different sides of the plane the crossings of all lines lie within the convex hull of those between
-/// corners.
-enum class Crossing { Clear, Hidden, Unknown };
-
-using Points2 = std::vector<glm::dvec2>;
-
-glm::dvec2 inPlane(const Occluder& occluder, const glm::dvec3& p) {
-    const glm::dvec3 d = p - occluder.corners[0];
-    return {glm::dot(d, occluder.axisU), glm::dot(d, occluder.axisV)};
-}
-
-/// The lowest and highest of the points along an axis.
-std::array<double, 2> range(const Points2& points, const glm::dvec2& axis) {
-    std::array<double, 2> result{glm::dot(points[0], axis), glm::dot(points[0], axis)};
-    for (const glm::dvec2& p : points) {
-        const double t = glm::dot(p, axis);
-        result[0] = std::min(result[0], t);
-        result[1] = std::max(result[1], t);
-    }
-    return result;
-}
-
-Crossing crossing(const OccludedPair& pair, const Occluder& occluder) {
-    static thread_local Points2 points, corners;
-    points.clear();
-    std::array<double, ConvexPolygon::kMostCorners> heightTo;
-    for (std::size_t j = 0; j < pair.to.size; ++j) heightTo[j] = occluder.plane.height(pair.to.corners[j]);
-    for (const glm::dvec3& p : pair.from.points()) {
-        const double heightFrom = occluder.plane.height(p);
-        for (std::size_t j = 0; j < pair.to.size; ++j) {
-            if (!(heightFrom * heightTo[j] < 0.0)) return Crossing::Unknown;
-            const double t = heightFrom / (heightFrom - heightTo[j]);
-            points.push_back(inPlane(occluder, p + t * (pair.to.corners[j] - p)));
-        }
-    }
-    corners.clear();
-    for (const glm::dvec3& p : occluder.corners) corners.push_back(inPlane(occluder, p));
-
-    bool hidden = true;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const glm::dvec2 along = corners[(k + 1) % corners.size()] - corners[k];
-        const glm::dvec2 inward(-along.y, along.x);
-        const double edge = glm::dot(inward, corners[k]);
-        const auto [low, high] = range(points, inward);
-        if (high <= edge) return Crossing::Clear;
-        hidden = hidden && low >= edge;
-    }
-    if (hidden) return Crossing::Hidden;
-    // The sides of the hull run between lines that share an end: try the directions of those from the first corners.
-    const auto separates = [&](const glm::dvec2& side) {
-        const glm::dvec2 axis(-side.y, side.x);
-        const auto lines = range(points, axis), blocker = range(corners, axis);
-        return lines[1] < blocker[0] || blocker[1] < lines[0];
-    };
-    for (std::size_t j = 0; j < pair.to.size; ++j)
-        if (separates(points[(j + 1) % pair.to.size] - points[j])) return Crossing::Clear;
-    for (std::size_t i = 0; i < pair.from.size; ++i)
-        if (separates(points[(i + 1) % pair.from.size * pair.to.size] - points[i * pair.to.size]))
-            return Crossing::Clear;
-    return Crossing::Unknown;
-}
-
 /// Collects the planes that cut `from` where what is visible of `to` changes its shape.
 class Cuts {
 public:
     explicit Cuts(const OccludedPair& pair) : pair_(pair) {
+        // The lines that matter most first.
+        for (const Occluder* occluder : pair.occluders) gatherFeet(*occluder);
         for (const Occluder* occluder : pair.occluders) gather(*occluder);
     }
-    const std::vector<Plane>& planes() const { return planes_; }
-    bool complete() const { return complete_; }
+    /// `from`, cut by the lines; `complete`: by all of them.
+    std::vector<ConvexPolygon> cells(bool& complete) const {
+        std::vector<ConvexPolygon> result{pair_.from}, next;
+        ConvexPolygon front, behind;
+        complete = complete_;
+        for (const Plane& plane : planes_) {
+            if (result.size() > kMostCells) {
+                complete = false;
+                break;
+            }
+            next.clear();
+            for (const ConvexPolygon& cell : result) {
+                split(cell, plane, pair_.tolerance, front, behind);
+                for (const ConvexPolygon& part : {front, behind})
+                    if (!part.empty()) next.push_back(part);
+            }
+            result.swap(next);
+        }
+        return result;
+    }
 
 private:
+    /// Whether a corner stands in the plane of the polygon.
+    bool stands(const glm::dvec3& corner) const { return pair_.fromPlane.height(corner) <= pair_.tolerance; }
+
+    /// On the two sides of an edge that stands in it the polygon sees different things.
+    void gatherFeet(const Occluder& occluder) {
+        for (std::size_t k = 0; k < occluder.corners.size(); ++k) {
+            const glm::dvec3& begin = occluder.corners[k];
+            const glm::dvec3& end = occluder.corners[k + 1 < occluder.corners.size() ? k + 1 : 0];
+            if (stands(begin) && stands(end))
+                add(Plane::through(begin, glm::normalize(glm::cross(pair_.fromPlane.normal, end - begin))));
+        }
+    }
+
     void gather(const Occluder& occluder) {
         const std::size_t n = occluder.corners.size();
         std::array<bool, ConvexPolygon::kMostCorners> inner;
@@ -113,12 +76,8 @@ private:
         for (std::size_t k = 0; k < n; ++k) {
             const glm::dvec3& begin = occluder.corners[k];
             const glm::dvec3& end = occluder.corners[(k + 1) % n];
-            const bool beginStands = pair_.fromPlane.height(begin) <= pair_.tolerance;
-            if (beginStands && pair_.fromPlane.height(end) <= pair_.tolerance) {
-                // On the edge's two sides the polygon sees different things.
-                add(Plane::through(begin, glm::normalize(glm::cross(pair_.fromPlane.normal, end - begin))));
-                continue;
-            }
+            const bool beginStands = stands(begin);
+            if (beginStands && stands(end)) continue;
             const std::uint32_t beyond = occluder.neighbour[k];
             const bool done = beyond < number && present(beyond); // with that occluder's edges
             if (!inner[k] && !done)
@@ -208,184 +167,115 @@ private:
     bool complete_ = true;
 };
 
-/// Appends what of `part` lies outside of the convex region in front of all planes; returns whether anything lies inside.
-bool subtractCone(std::span<const Plane> planes, const ConvexPolygon& part, std::vector<ConvexPolygon>& left) {
-    std::array<std::size_t, ConvexPolygon::kMostCorners + 1> crossing;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-        bool above = false, below = false;
-        for (const glm::dvec3& p : part.points()) {
-            const double height = planes[k].height(p);
-            above = above || height > 0.0;
-            below = below || height < 0.0;
-        }
-        if (!above) {
-            left.push_back(part);
-            return false;
-        }
-        if (below) crossing[count++] = k;
-    }
-    const std::size_t first = left.size();
-    ConvexPolygon inside = part, front, behind;
-    for (std::size_t c = 0; c < count; ++c) {
-        split(inside, planes[crossing[c]], 0.0, front, behind);
-        if (!behind.empty()) left.push_back(behind);
-        if (front.empty()) {
-            // Beside the region after all: it need not stay in pieces.
-            left.erase(left.begin() + static_cast<std::ptrdiff_t>(first), left.end());
-            left.push_back(part);
-            return false;
-        }
-        inside = front;
-    }
-    return true;
-}
-
-/// The exchange between a cell and the target polygon, by Gauss's rule over the cell.
+/// The exchange between parts of `from`, each with the occluders that matter there, and the target polygon.
 class CellIntegral {
 public:
-    explicit CellIntegral(const OccludedPair& pair) : pair_(pair) {}
+    struct Cell {
+        ConvexPolygon polygon;
+        std::vector<const Occluder*> occluders;
+    };
 
-    /// With the visible part of the target found at each point.
-    double visible(const ConvexPolygon& cell, int order) const {
-        static thread_local std::vector<WeightedPoint> points;
-        points.clear();
-        appendGaussPoints(cell.points(), order, points);
+    /// `error` aimed at in each cell, m².
+    CellIntegral(const OccludedPair& pair, double error) : pair_(pair), error_(error) {}
+
+    /// Of all of `from`, cut along the lines where the visible part changes its shape.
+    double whole() const {
+        bool complete = false;
+        const std::vector<ConvexPolygon> polygons = Cuts(pair_).cells(complete);
         double sum = 0.0;
-        for (const auto& [x, weight] : points)
-            sum +=
-                weight * VisibleParts(x, pair_.to, pair_.occluders, pair_.tolerance).formFactor(pair_.fromPlane.normal);
+        for (const ConvexPolygon& polygon : polygons) {
+            Cell cell{polygon, pair_.occluders};
+            if (polygons.size() > 1 && !keepBlocking(cell)) continue;
+            const Visibility atCentre = visibleFrom(polygon.centre(), cell).visibility();
+            // Without a line through it, a cell that sees all from one point sees all from every point; likewise nothing,
+            // but where several occluders together hide the target there may be gaps between them.
+            if (cell.occluders.empty() || (atCentre == Visibility::All && complete))
+                sum += free(cell);
+            else if (atCentre != Visibility::None || cell.occluders.size() > 1 || !complete) {
+                const double low = byRule(cell, 2);
+                if (low > 0.0 || !complete) sum += refined(cell, low, kMostHalvings);
+            }
+        }
         return sum;
     }
 
-    /// By three points per axis, or by halves until that agrees. `low` is the integral by two.
-    double refined(const ConvexPolygon& cell, double low, double error, int halvings) const {
-        const double high = visible(cell, 3);
-        if (std::abs(high - low) <= error || halvings == 0) return high;
-        const glm::dvec3 centre = cell.centre();
-        glm::dvec3 longest(0.0);
-        for (const glm::dvec3& p : cell.points())
-            if (glm::dot(p - centre, p - centre) > glm::dot(longest, longest)) longest = p - centre;
-        ConvexPolygon front, behind;
-        split(cell, Plane::through(centre, longest), 0.0, front, behind);
+    /// By Gauss's rule over the cell, with the visible part of the target found at each point.
+    double byRule(const Cell& cell, int order) const {
+        static thread_local std::vector<WeightedPoint> points;
+        points.clear();
+        appendGaussPoints(cell.polygon.points(), order, points);
         double sum = 0.0;
-        for (const ConvexPolygon& part : {front, behind})
-            if (!part.empty()) sum += refined(part, visible(part, 2), error, halvings - 1);
+        for (const auto& [x, weight] : points) sum += weight * visibleFrom(x, cell).formFactor(pair_.fromPlane.normal);
         return sum;
     }
 
 private:
-    const OccludedPair& pair_;
-};
-
-std::vector<ConvexPolygon> divided(const ConvexPolygon& polygon, const Cuts& cuts, double tolerance) {
-    std::vector<ConvexPolygon> result{polygon}, next;
-    ConvexPolygon front, behind;
-    for (const Plane& plane : cuts.planes()) {
-        if (result.size() > kMostCells) break;
-        next.clear();
-        for (const ConvexPolygon& cell : result) {
-            split(cell, plane, tolerance, front, behind);
-            for (const ConvexPolygon& part : {front, behind})
-                if (!part.empty()) next.push_back(part);
-        }
-        result.swap(next);
+    VisibleParts visibleFrom(const glm::dvec3& point, const Cell& cell) const {
+        return {point, pair_.to, cell.occluders, pair_.tolerance};
     }
-    return result;
-}
+
+    /// Leaves the occluders that may hide something from the cell; false if one hides all.
+    bool keepBlocking(Cell& cell) const {
+        bool hidden = false;
+        std::erase_if(cell.occluders, [&](const Occluder* occluder) {
+            if (hidden) return false;
+            const Blocking found =
+                blocking(cell.polygon, pair_.fromPlane, pair_.to, pair_.toPlane, *occluder, pair_.tolerance);
+            hidden = found == Blocking::Hidden;
+            return found == Blocking::Clear;
+        });
+        return !hidden;
+    }
+
+    double free(const Cell& cell) const {
+        return convexExchange(cell.polygon, pair_.fromPlane, pair_.to, pair_.toPlane);
+    }
+
+    /// By three points per axis, or by halves until that agrees with two (`low`).
+    double refined(const Cell& cell, double low, int halvings) const {
+        const double high = byRule(cell, 3);
+        if (std::abs(high - low) <= error_ || halvings == 0) return high;
+        const glm::dvec3 centre = cell.polygon.centre();
+        glm::dvec3 longest(0.0);
+        for (const glm::dvec3& p : cell.polygon.points())
+            if (glm::dot(p - centre, p - centre) > glm::dot(longest, longest)) longest = p - centre;
+        Cell front{{}, cell.occluders}, behind{{}, cell.occluders};
+        split(cell.polygon, Plane::through(centre, longest), 0.0, front.polygon, behind.polygon);
+        double sum = 0.0;
+        for (Cell* half : {&front, &behind}) {
+            if (half->polygon.empty() || !keepBlocking(*half)) continue;
+            sum += half->occluders.empty() ? free(*half) : refined(*half, byRule(*half, 2), halvings - 1);
+        }
+        return sum;
+    }
+
+    const OccludedPair& pair_;
+    double error_;
+};
 
 } // namespace
 
 bool dropClearOccluders(OccludedPair& pair) {
-    const auto from = pair.from.points(), to = pair.to.points();
-    const double t = pair.tolerance;
     Extents both;
-    for (const auto& points : {from, to})
+    for (const auto& points : {pair.from.points(), pair.to.points()})
         for (const glm::dvec3& p : points) both.add(p, pair.directions);
     bool hidden = false;
     std::erase_if(pair.occluders, [&](const Occluder* occluder) {
         if (hidden) return false;
-        if (both.apart(occluder->extents, pair.directions.size(), t)) return true;
-        const Plane& plane = occluder->plane;
-        if (allAbove(plane, from, -t) && allAbove(plane, to, -t)) return true;
-        if (allBelow(plane, from, t) && allBelow(plane, to, t)) return true;
-        if (allBelow(pair.fromPlane, occluder->corners, t) || allBelow(pair.toPlane, occluder->corners, t)) return true;
-        const Crossing found = crossing(pair, *occluder);
-        hidden = found == Crossing::Hidden && !occluder->holes;
-        return found == Crossing::Clear;
+        if (both.apart(occluder->extents, pair.directions.size(), pair.tolerance)) return true;
+        const Blocking found = blocking(pair.from, pair.fromPlane, pair.to, pair.toPlane, *occluder, pair.tolerance);
+        hidden = found == Blocking::Hidden;
+        return found == Blocking::Clear;
     });
     return !hidden;
 }
 
-VisibleParts::VisibleParts(const glm::dvec3& point, const ConvexPolygon& polygon,
-                           std::span<const Occluder* const> occluders, double tolerance)
-    : point_(point), parts_([]() -> std::vector<ConvexPolygon>& {
-          static thread_local std::vector<ConvexPolygon> scratch;
-          return scratch;
-      }()) {
-    parts_.assign(1, polygon);
-    for (const Occluder* occluder : occluders) {
-        subtract(*occluder, tolerance);
-        if (parts_.empty()) break;
-    }
-    if (parts_.empty()) visibility_ = Visibility::None;
-}
-
-void VisibleParts::subtract(const Occluder& occluder, double tolerance) {
-    static thread_local std::vector<ConvexPolygon> left;
-    const double height = occluder.plane.height(point_);
-    if (std::abs(height) <= 1e-3 * tolerance) return; // seen edge-on
-    // What is hidden lies behind the occluder and within the cone of its edges.
-    std::array<Plane, ConvexPolygon::kMostCorners + 1> cone;
-    const double side = height > 0.0 ? 1.0 : -1.0;
-    const std::size_t n = occluder.corners.size();
-    for (std::size_t k = 0; k < n; ++k)
-        cone[k] = Plane::through(
-            point_, side * glm::cross(occluder.corners[(k + 1) % n] - point_, occluder.corners[k] - point_));
-    cone[n] = {-side * occluder.plane.normal, -side * occluder.plane.offset, -1};
-    const std::span<const Plane> planes(cone.data(), n + 1);
-    left.clear();
-    bool changed = false;
-    for (const ConvexPolygon& part : parts_) changed = subtractCone({cone.data(), n + 1}, part, left) || changed;
-    if (!changed) return;
-    visibility_ = Visibility::Part;
-    parts_.swap(left);
-}
-
-double VisibleParts::formFactor(const glm::dvec3& normal) const {
-    double sum = 0.0;
-    for (const ConvexPolygon& part : parts_) sum += pointToVisiblePolygon(point_, normal, part.points());
-    return sum;
-}
-
 double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError) {
-    const Cuts cuts(pair);
-    const CellIntegral integral(pair);
-    struct Cell {
-        ConvexPolygon polygon;
-        double low;
-    };
-    std::vector<Cell> partly;
-    double clear = 0.0, estimate = 0.0;
-    std::size_t clearCells = 0;
-    const std::vector<ConvexPolygon> cells = divided(pair.from, cuts, pair.tolerance);
-    for (const ConvexPolygon& cell : cells) {
-        const Visibility atCentre = VisibleParts(cell.centre(), pair.to, pair.occluders, pair.tolerance).visibility();
-        // Without a line through it, a cell that sees all from one point sees all from every point; likewise nothing, but
-        // where several occluders together hide the target there may be gaps between them.
-        if (atCentre == Visibility::All && cuts.complete()) {
-            clear += cells.size() > 1 ? convexExchange(cell, pair.fromPlane, pair.to, pair.toPlane) : unoccluded;
-            ++clearCells;
-        } else if (atCentre != Visibility::None || pair.occluders.size() > 1 || !cuts.complete()) {
-            estimate += partly.emplace_back(cell, integral.visible(cell, 2)).low;
-        }
-    }
-    if (clearCells == cells.size()) return unoccluded;
-    const double error = relativeError * std::max(clear + estimate, kSmallestShare * unoccluded);
-    double sum = clear;
-    for (const Cell& cell : partly)
-        if (cell.low > 0.0) sum += integral.refined(cell.polygon, cell.low, error, kMostHalvings);
-    return sum > kRounding * unoccluded ? std::min(sum, unoccluded) : 0.0;
+    const double estimate = CellIntegral(pair, 0.0).byRule({pair.from, pair.occluders}, 2);
+    const double error = relativeError * std::max(estimate, kSmallestShare * unoccluded);
+    const double sum = CellIntegral(pair, error).whole();
+    if (sum >= (1.0 - kRounding) * unoccluded) return unoccluded;
+    return sum > kRounding * unoccluded ? sum : 0.0;
 }
 
 } // namespace lambert

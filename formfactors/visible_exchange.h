@@ -32,25 +32,4 @@ bool dropClearOccluders(OccludedPair& pair);
 /// subdivided until two rules agree.
 double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError);
 
-/// How much of a polygon is visible.
-enum class Visibility { None, Part, All };
-
-/// The parts of `polygon` that are visible from `point` past the occluders; exact.
-class VisibleParts {
-public:
-    VisibleParts(const glm::dvec3& point, const ConvexPolygon& polygon, std::span<const Occluder* const> occluders,
-                 double tolerance);
-    Visibility visibility() const { return visibility_; }
-    /// The fraction of what leaves a surface element at the point (unit `normal`) that reaches the front of the visible
-    /// parts; the polygon lies above the element's horizon and faces it.
-    double formFactor(const glm::dvec3& normal) const;
-
-private:
-    void subtract(const Occluder& occluder, double tolerance);
-
-    glm::dvec3 point_;
-    Visibility visibility_ = Visibility::All;
-    std::vector<ConvexPolygon>& parts_; ///< scratch memory of the thread
-};
-
 } // namespace lambert
