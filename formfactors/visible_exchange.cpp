@@ -4,7 +4,7 @@
 
 #include "formfactors/closed_form.h"
 #include "formfactors/gauss_exchange.h"
-#include "formfactors/occluder_tests.h"
+#include "formfactors/blocking.h"
 #include "formfactors/quadrature.h"
 #include "formfactors/visible_parts.h"
 

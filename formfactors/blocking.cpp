@@ -1,4 +1,4 @@
-#include "formfactors/occluder_tests.h"
+#include "formfactors/blocking.h"
 
 #include <glm/vec2.hpp>
 
