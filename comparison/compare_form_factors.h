@@ -18,7 +18,7 @@ namespace lambert {
 struct RunMeasures {
     double relativeRms = 0.0, bias = 0.0, rms = 0.0, maximum = 0.0;  //!< see FormFactorErrors
     double misdirected = 0.0;                                        //!< the same
-    double rowClosure = 0.0, columnClosure = 0.0, reciprocity = 0.0; //!< see MatrixIdentities, RMS
+    double rowClosure = 0.0, columnClosure = 0.0, reciprocity = 0.0; //!< see MatrixQuality and ColumnClosure, RMS
     double radiosity = 0.0;                                          //!< see radiosityError; 0 in a scene without light
     double rays = 0.0;
     double processorSeconds = 0.0, wallSeconds = 0.0; //!< of the matrix, without solving

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace lambert {
 
@@ -28,5 +29,15 @@ struct MatrixQuality {
 
 /// `area`: #patches, m².
 MatrixQuality assessMatrix(const FormFactorMatrix& matrix, std::span<const float> area);
+
+/// What each patch receives if every surface sends 1 per m², less 1. Rows that count lines close by construction and prove
+/// nothing; their columns do.
+struct ColumnClosure {
+    std::vector<float> error; //!< #patches, |Σ_i A_i F_ij / A_j + F_j,back + F_j,out − 1|
+    double rms = 0.0;         //!< over the patches
+};
+
+/// `area`: #patches, m², above 0. On one thread.
+ColumnClosure columnClosure(const FormFactorMatrix& matrix, std::span<const float> area);
 
 } // namespace lambert
