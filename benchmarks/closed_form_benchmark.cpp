@@ -18,17 +18,6 @@
 namespace lambert {
 namespace {
 
-glm::dvec3 same(const glm::dvec3& p) { return p; }
-glm::dvec3 sheared(const glm::dvec3& p) { return {p.x + 0.3 * p.z + 0.1 * p.y, p.y + 0.2 * p.z, p.z}; }
-glm::dvec3 turned(const glm::dvec3& p) {
-    const double c = std::cos(0.7), s = std::sin(0.7);
-    const glm::dvec3 q(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
-    return {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
-}
-glm::dvec3 dented(const glm::dvec3& p) {
-    return std::abs(p.x - 0.5) < 0.26 ? glm::dvec3(p.x, p.y, 0.25 + 0.75 * p.z) : p;
-}
-
 void quality(const FormFactorMatrix& matrix, const PatchMesh& mesh, benchmark::State& state) {
     const std::size_t n = matrix.size();
     std::vector<double> exchange(n * n, 0.0);

@@ -14,12 +14,14 @@ Scene quadScene(std::span<const std::array<glm::vec3, 4>> quads, std::span<const
     Scene scene;
     scene.materials.assign(materials.begin(), materials.end());
     scene.nodes = {"scene"};
-    for (std::uint32_t i = 0; i < quads.size(); ++i) {
-        const auto first = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.insert(scene.positions.end(), quads[i].begin(), quads[i].end());
-        scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, i, 0});
-    }
+    for (std::uint32_t i = 0; i < quads.size(); ++i) addQuad(scene, quads[i], i);
     return scene;
+}
+
+void addQuad(Scene& scene, const std::array<glm::vec3, 4>& quad, std::uint32_t material) {
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    scene.positions.insert(scene.positions.end(), quad.begin(), quad.end());
+    scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, material, 0});
 }
 
 Scene boxScene(const glm::vec3& size, const std::array<Material, 6>& materials) {
@@ -41,16 +43,26 @@ Scene roomWithBoxScene() {
     walls[5] = greyMaterial("lamp", 0.5F, 1.0F);
     Scene scene = boxScene(glm::vec3(2.0F), walls);
     scene.materials.push_back(greyMaterial("box", 0.5F));
-    const auto addQuad = [&](const std::array<glm::vec3, 4>& quad) {
-        const auto first = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.insert(scene.positions.end(), quad.begin(), quad.end());
-        scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
-    };
     const std::array<glm::vec3, 4> base{{{0.83F, 0.61F, 0}, {1.37F, 0.79F, 0}, {1.19F, 1.33F, 0}, {0.65F, 1.15F, 0}}};
     const glm::vec3 up(0.0F, 0.0F, 0.5F);
-    for (std::size_t k = 0; k < 4; ++k) addQuad({base[k], base[(k + 1) % 4], base[(k + 1) % 4] + up, base[k] + up});
-    addQuad({base[0] + up, base[1] + up, base[2] + up, base[3] + up});
+    for (std::size_t k = 0; k < 4; ++k)
+        addQuad(scene, {base[k], base[(k + 1) % 4], base[(k + 1) % 4] + up, base[k] + up}, 6);
+    addQuad(scene, {base[0] + up, base[1] + up, base[2] + up, base[3] + up}, 6);
     return scene;
+}
+
+glm::dvec3 same(const glm::dvec3& p) { return p; }
+
+glm::dvec3 sheared(const glm::dvec3& p) { return {p.x + 0.3 * p.z + 0.1 * p.y, p.y + 0.2 * p.z, p.z}; }
+
+glm::dvec3 turned(const glm::dvec3& p) {
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    const glm::dvec3 q(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
+    return {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+}
+
+glm::dvec3 dented(const glm::dvec3& p) {
+    return std::abs(p.x - 0.5) < 0.26 ? glm::dvec3(p.x, p.y, 0.25 + 0.75 * p.z) : p;
 }
 
 GridScene::GridScene() {

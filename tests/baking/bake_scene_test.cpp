@@ -83,11 +83,7 @@ TEST(BakeScene, WarnsAndNamesTheMaterialWhereLightMeetsBacks) {
 TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
     Scene scene = roomWithBoxScene();
     scene.polygons.resize(6);
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    for (const glm::vec3 p :
-         {glm::vec3(0.5F, 0.5F, 1), glm::vec3(1.5F, 0.5F, 1), glm::vec3(1.5F, 1.5F, 1), glm::vec3(0.5F, 1.5F, 1)})
-        scene.positions.push_back(p);
-    scene.polygons.push_back({{first, first + 1, first + 2, first + 3}, 6, 0});
+    addQuad(scene, {{{0.5F, 0.5F, 1}, {1.5F, 0.5F, 1}, {1.5F, 1.5F, 1}, {0.5F, 1.5F, 1}}}, 6);
     scene.materials[6].twoSided = true;
     const BakedScene baked = bake(scene, 600, 32);
     double front = 0.0;

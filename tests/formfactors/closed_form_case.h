@@ -63,8 +63,6 @@ struct ClosedFormCase {
     ClosedForm method;
 };
 
-inline glm::dvec3 same(const glm::dvec3& p) { return p; }
-
 /// A box that floats in the unit cube.
 inline constexpr glm::dvec3 kBoxLow{0.35, 0.3, 0.4}, kBoxHigh{0.65, 0.6, 0.7};
 

@@ -197,14 +197,9 @@ TEST(GlobalLines, RowsCloseToTheLastLine) {
 
 TEST(GlobalLines, SeePatchesOnBothSidesOfASheet) {
     Scene scene = closedBox(kRoom432);
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    for (const glm::vec3& p : {glm::vec3(1, 0, 0), glm::vec3(1, 3, 0), glm::vec3(1, 3, 2.5), glm::vec3(1, 0, 2.5)})
-        scene.positions.push_back(p);
-    Material sheet = greyMaterial("sheet", 0.5F);
-    sheet.twoSided = true;
-    scene.polygons.push_back(
-        {{first, first + 1, first + 2, first + 3}, static_cast<std::uint32_t>(scene.materials.size()), 0});
-    scene.materials.push_back(sheet);
+    addQuad(scene, {{{1, 0, 0}, {1, 3, 0}, {1, 3, 2.5}, {1, 0, 2.5}}}, 6);
+    scene.materials.push_back(greyMaterial("sheet", 0.5F));
+    scene.materials[6].twoSided = true;
     const ExactCase exact(scene);
     const LinesCase c(scene);
     ASSERT_EQ(c.mesh.size(), 8U);
@@ -232,14 +227,9 @@ TEST(GlobalLines, SeePatchesOnBothSidesOfASheet) {
 
 TEST(GlobalLines, MeetOccludersOnTheirBack) {
     Scene scene = closedBox(kCube6);
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    for (const glm::vec3& p : {glm::vec3(0, 0, 0.5), glm::vec3(1, 0, 0.5), glm::vec3(1, 1, 0.5), glm::vec3(0, 1, 0.5)})
-        scene.positions.push_back(p);
-    Material shutter = greyMaterial("shutter", 0.0F);
-    shutter.occluder = true;
-    scene.polygons.push_back(
-        {{first, first + 1, first + 2, first + 3}, static_cast<std::uint32_t>(scene.materials.size()), 0});
-    scene.materials.push_back(shutter);
+    addQuad(scene, {{{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}}}, 6);
+    scene.materials.push_back(greyMaterial("shutter", 0.0F));
+    scene.materials[6].occluder = true;
     const LinesCase c(scene);
     ASSERT_EQ(c.mesh.size(), 6U);
     const FormFactorMatrix matrix = c.matrix({.lines = 200'000});

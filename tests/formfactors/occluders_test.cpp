@@ -5,20 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace lambert {
 namespace {
 
-glm::dvec3 turned(const glm::dvec3& p) {
-    const double c = std::cos(0.7), s = std::sin(0.7);
-    const glm::dvec3 q(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
-    return {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
-}
-
 // Rounding turns the small quads by more than the tolerance; the whole walls it does not.
 TEST(Occluders, WallsOfManyQuadsBecomeOnePolygonEach) {
-    for (const GridScene::Map& map : {GridScene::Map([](const glm::dvec3& p) { return p; }), GridScene::Map(turned)}) {
+    for (const GridScene::Map& map : {GridScene::Map(same), GridScene::Map(turned)}) {
         for (const int n : {1, 5, 24}) {
             const Scene scene = prepareScene(GridScene()
                                                  .box({0, 0, 0}, {1, 1, 1}, n, true, map)
