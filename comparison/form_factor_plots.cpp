@@ -13,7 +13,7 @@ namespace {
 constexpr double kVaguestSlope = 0.3; ///< standard error of a slope that is still told
 
 /// One point per effort: the mean over the seeds, its bar one standard deviation to both sides.
-PlotCurve curve(const MethodResult& method, int style, const Measure& cost, const Measure& error) {
+PlotCurve curve(const MethodResult& method, const Measure& cost, const Measure& error) {
     PlotCurve result;
     for (const EffortResult& effort : method.efforts) {
         const MeanDeviation y = effort.of(error);
@@ -23,7 +23,6 @@ PlotCurve curve(const MethodResult& method, int style, const Measure& cost, cons
     result.label = law && law->exponentError <= kVaguestSlope
                        ? fmt::format("{}, slope {}", method.method->name, slopeText(law))
                        : method.method->name;
-    result.style = style;
     return result;
 }
 
@@ -31,6 +30,20 @@ bool isEmpty(const PlotCurve& curve) {
     for (const PlotCurve::Point& p : curve.points)
         if (p.x > 0.0 && p.y > 0.0) return false;
     return true;
+}
+
+/// A point without a bar.
+PlotCurve::Point exactPoint(double x, double y) { return {x, y, y, y}; }
+
+/// Adds `curveOf(method)` of each method that has one, in the method's style.
+template <typename CurveOf>
+void addCurves(Plot& plot, const FormFactorComparison& comparison, CurveOf curveOf) {
+    int style = 0;
+    for (const MethodResult& method : comparison.methods) {
+        PlotCurve c = curveOf(method);
+        c.style = style++;
+        if (!isEmpty(c)) plot.curves.push_back(std::move(c));
+    }
 }
 
 CaptionedPlot errorOverCost(const FormFactorComparison& comparison, const char* error, const char* cost,
@@ -41,11 +54,8 @@ CaptionedPlot errorOverCost(const FormFactorComparison& comparison, const char* 
     result.plot.x = overRays ? PlotAxis{"rays", countText} : PlotAxis{"CPU seconds", numberLabel};
     result.plot.y = {yLabel, percentLabel};
     result.plot.description = fmt::format("{} against {}", measure(error).name, result.plot.x.label);
-    int style = 0;
-    for (const MethodResult& method : comparison.methods) {
-        PlotCurve c = curve(method, style++, measure(cost), measure(error));
-        if (!isEmpty(c)) result.plot.curves.push_back(std::move(c));
-    }
+    addCurves(result.plot, comparison,
+              [&](const MethodResult& method) { return curve(method, measure(cost), measure(error)); });
     return result;
 }
 
@@ -59,15 +69,12 @@ CaptionedPlot systematic(const FormFactorComparison& comparison) {
     result.plot.y = {"systematic relative error", percentLabel};
     result.caption = "The part that is the same for every seed: one point in place of a whole patch, aliasing. "
                      "A method without bias has none but this estimate's noise; points below that are missing.";
-    int style = 0;
-    for (const MethodResult& method : comparison.methods) {
-        PlotCurve c{method.method->name, {}, style++};
+    addCurves(result.plot, comparison, [](const MethodResult& method) {
+        PlotCurve c{method.method->name, {}, 0};
         for (const EffortResult& effort : method.efforts)
-            if (effort.systematic)
-                c.points.push_back(
-                    {effort.of(measure("rays")).mean, *effort.systematic, *effort.systematic, *effort.systematic});
-        if (!isEmpty(c)) result.plot.curves.push_back(std::move(c));
-    }
+            if (effort.systematic) c.points.push_back(exactPoint(effort.of(measure("rays")).mean, *effort.systematic));
+        return c;
+    });
     return result;
 }
 
@@ -80,16 +87,14 @@ CaptionedPlot bySize(const FormFactorComparison& comparison) {
     result.plot.y = {"relative RMS error", percentLabel};
     result.caption =
         "Each method at its highest effort. A factor worth less than one ray gets nothing or far too much.";
-    int style = 0;
-    for (const MethodResult& method : comparison.methods) {
-        PlotCurve c{method.method->name, {}, style++};
+    addCurves(result.plot, comparison, [](const MethodResult& method) {
+        PlotCurve c{method.method->name, {}, 0};
         if (!method.efforts.empty())
             c.label = fmt::format("{} {}", c.label, effortNumber(method.efforts.back().effort));
         for (const FactorSizeError& size : method.bySize)
-            c.points.push_back(
-                {std::sqrt(size.lower * size.upper), size.relativeRms, size.relativeRms, size.relativeRms});
-        if (!isEmpty(c)) result.plot.curves.push_back(std::move(c));
-    }
+            c.points.push_back(exactPoint(std::sqrt(size.lower * size.upper), size.relativeRms));
+        return c;
+    });
     return result;
 }
 
