@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/parallel.h"
+#include "formfactors/form_factor_method.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
@@ -68,6 +69,32 @@ private:
     }
     std::vector<double> bare_, ours_, ratio_;
 };
+
+/// Rows of a method against bare tracing of the same rays, for 24 patches a turn: `raysOf(patch)`, which is not measured,
+/// makes what `trace(patch, rays)` traces.
+template <typename RaysOf, typename Trace>
+void compareRows(benchmark::State& state, const FormFactorMethod& method, RaysOf raysOf, Trace trace) {
+    constexpr std::size_t kRows = 24;
+    RowAccumulator accumulator(method.patchCount());
+    FormFactorRow row;
+    Comparison comparison;
+    for (auto _ : state) {
+        double bareSeconds = 0.0;
+        double rowSeconds = 0.0;
+        for (std::size_t k = 0; k < kRows; ++k) {
+            const auto patch = static_cast<std::uint32_t>(k * method.patchCount() / kRows);
+            const auto rays = raysOf(patch);
+            CpuStopwatch watch;
+            trace(patch, rays);
+            bareSeconds += watch.lap();
+            method.row(patch, accumulator);
+            accumulator.take(row);
+            rowSeconds += watch.lap();
+        }
+        comparison.add(static_cast<double>(kRows * method.raysPerRow()), bareSeconds, rowSeconds);
+    }
+    comparison.report(state);
+}
 
 /// A scene with what traces rays through it and patches.
 struct BenchmarkScene {

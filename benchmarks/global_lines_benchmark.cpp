@@ -8,6 +8,7 @@
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
 #include "formfactors/global_lines.h"
+#include "scene/embree_scene.h"
 
 namespace lambert {
 namespace {
@@ -42,14 +43,7 @@ std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
     alignas(64) RTCRay16 rays;
     std::size_t hits = 0;
     for (const LinePacket& packet : packets) {
-        for (unsigned lane = 0; lane < 16; ++lane) {
-            rays.tnear[lane] = 0.0F;
-            rays.tfar[lane] = 1.0F;
-            rays.time[lane] = 0.0F;
-            rays.mask[lane] = ~0U;
-            rays.id[lane] = lane;
-            rays.flags[lane] = 0;
-        }
+        beginRays(rays, 1.0F);
         std::copy_n(packet.originX, 16, rays.org_x);
         std::copy_n(packet.originY, 16, rays.org_y);
         std::copy_n(packet.originZ, 16, rays.org_z);

@@ -15,7 +15,6 @@ namespace lambert {
 namespace {
 
 constexpr std::uint32_t kLines = 1U << 14;
-constexpr std::size_t kRows = 24;
 
 std::size_t trace(RTCScene scene, const std::vector<Ray>& rays) {
     RTCIntersectContext context;
@@ -52,27 +51,10 @@ std::vector<Ray> shuffled(const std::vector<Ray>& rays) {
 
 void compareLocalLines(benchmark::State& state, const BenchmarkScene& scene) {
     const BareEmbree bare(scene.scene);
-    const PatchMesh& mesh = scene.mesh;
-    const LocalLines lines(mesh, scene.rays, {.lines = kLines});
-    RowAccumulator accumulator(mesh.size());
-    FormFactorRow row;
-    Comparison comparison;
-    for (auto _ : state) {
-        double bareSeconds = 0.0;
-        double rowSeconds = 0.0;
-        for (std::size_t k = 0; k < kRows; ++k) {
-            const auto patch = static_cast<std::uint32_t>(k * mesh.size() / kRows);
-            const std::vector<Ray> rays = shuffled(lines.lines(patch));
-            CpuStopwatch watch;
-            benchmark::DoNotOptimize(trace(bare.handle(), rays));
-            bareSeconds += watch.lap();
-            lines.row(patch, accumulator);
-            accumulator.take(row);
-            rowSeconds += watch.lap();
-        }
-        comparison.add(static_cast<double>(kRows * kLines), bareSeconds, rowSeconds);
-    }
-    comparison.report(state);
+    const LocalLines lines(scene.mesh, scene.rays, {.lines = kLines});
+    compareRows(
+        state, lines, [&](std::uint32_t patch) { return shuffled(lines.lines(patch)); },
+        [&](std::uint32_t, const std::vector<Ray>& rays) { benchmark::DoNotOptimize(trace(bare.handle(), rays)); });
 }
 
 const bool registered = [] {

@@ -55,6 +55,24 @@ private:
     std::unique_ptr<RTCSceneTy, Release> embree_;
 };
 
+/// All but origins and directions of rays that end after `length` of their directions and meet everything on the way.
+inline void beginRays(RTCRay16& rays, float length) {
+    for (unsigned lane = 0; lane < 16; ++lane) {
+        rays.tnear[lane] = 0.0F;
+        rays.tfar[lane] = length;
+        rays.time[lane] = 0.0F;
+        rays.mask[lane] = ~0U;
+        rays.id[lane] = lane;
+        rays.flags[lane] = 0;
+    }
+}
+
+/// The same of rays without end, and that they have not met anything.
+inline void beginRays(RTCRayHit16& rays) {
+    beginRays(rays.ray, 1e30F);
+    for (unsigned& geometry : rays.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
+}
+
 /// Whether a hit (the `lane`-th of a filter's query) lies in a hole of its polygon.
 bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane);
 

@@ -59,13 +59,8 @@ void load(const LinePacket& packet, RTCRay16& rays) {
         rays.dir_x[lane] = packet.directionX[lane];
         rays.dir_y[lane] = packet.directionY[lane];
         rays.dir_z[lane] = packet.directionZ[lane];
-        rays.tnear[lane] = 0.0F;
-        rays.tfar[lane] = 1.0F;
-        rays.time[lane] = 0.0F;
-        rays.mask[lane] = ~0U;
-        rays.id[lane] = static_cast<unsigned>(lane);
-        rays.flags[lane] = 0;
     }
+    beginRays(rays, 1.0F);
 }
 
 /// A line in double precision, for crossings that float cannot order.

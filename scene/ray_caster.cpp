@@ -25,13 +25,8 @@ void loadDirections(const RayPacket& packet, RTCRayHit16& rays) {
         rays.ray.dir_x[lane] = packet.directionX[lane];
         rays.ray.dir_y[lane] = packet.directionY[lane];
         rays.ray.dir_z[lane] = packet.directionZ[lane];
-        rays.ray.tnear[lane] = 0.0F;
-        rays.ray.tfar[lane] = 1e30F;
-        rays.ray.time[lane] = 0.0F;
-        rays.ray.mask[lane] = ~0U;
-        rays.ray.flags[lane] = 0;
-        rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
+    beginRays(rays);
 }
 
 LAMBERT_VECTOR_CLONES
