@@ -145,15 +145,13 @@ ReadResult readScene(const SceneArguments& a, Progress* progress) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
     AppliedOverrides overrides = gatherOverrides(a);
-    ReadOptions options;
-    options.metresPerUnit = overrides.metresPerUnit;
-    options.twoSided = overrides.twoSided;
-    options.curveSegments = a.curveSegments;
-    options.mostPolygons = a.mostPolygons;
-    options.strict = a.strict;
-    options.allowOutsideFiles = a.allowOutsideFiles;
-    options.progress = progress;
-    ReadResult result = readScene(a.path, options);
+    ReadResult result = readScene(a.path, {.metresPerUnit = overrides.metresPerUnit,
+                                           .twoSided = overrides.twoSided,
+                                           .strict = a.strict,
+                                           .allowOutsideFiles = a.allowOutsideFiles,
+                                           .progress = progress,
+                                           .curveSegments = a.curveSegments,
+                                           .mostPolygons = a.mostPolygons});
     applyOverrides(result.scene, overrides.changes);
     result.report.overrides = std::move(overrides);
     return result;

@@ -40,63 +40,44 @@ void refuseBesideFile(const TransportArguments& a) {
 } // namespace
 
 void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
-    command
-        .add_option("--method", a.method,
-                    fmt::format("How form factors are computed: {} [hemicube]", fmt::join(methodNames(), ", ")))
-        ->check(CLI::IsMember(methodNames()))
-        ->type_name("METHOD")
-        ->group("Transport");
-    command
-        .add_option("--resolution", a.resolution,
-                    "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a "
-                    "multiple of 4 [220]; less if time or memory ask for it")
-        ->type_name("R")
-        ->check(between(4.0, 4096.0))
-        ->group("Transport");
-    command.add_option("--hemicubes", a.hemicubes, "Hemicubes or hemispheres spread over a patch, 1 to 1024 [1]")
-        ->type_name("K")
-        ->check(between(1.0, 1024.0))
-        ->group("Transport");
-    command.add_option("--rotation", a.rotation, "Of these about their normals: random or fixed [random]")
-        ->check(CLI::IsMember({"random", "fixed"}))
-        ->type_name("HOW")
-        ->group("Transport");
-    command
-        .add_option(
-            "--lines", a.lines,
-            "Local lines per patch, 1 to 16777216 [32768], or global lines in all, up to 4294967295 [an eighth of "
-            "the hemicubes' rays]; less if time or memory ask for it")
-        ->type_name("N")
-        ->check(between(1.0, 4294967295.0))
-        ->group("Transport");
-    command.add_option("--sampler", a.sampler, "Of lines: random, stratified, halton or sobol [sobol]")
-        ->check(CLI::IsMember({"random", "stratified", "halton", "sobol"}))
-        ->type_name("SAMPLER")
-        ->group("Transport");
-    command
-        .add_option("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]")
-        ->check(CLI::IsMember({"chords", "bundles"}))
-        ->type_name("SET")
-        ->group("Transport");
-    command
-        .add_option("--form-factor-error", a.formFactorError,
-                    "Closed form: aimed at in partly hidden pairs, relative, 1e-8 to 0.1 [1e-4]")
-        ->check(between(1e-8, 0.1))
-        ->type_name("E")
-        ->group("Transport");
-    command
-        .add_option(
-            "--storage", a.storage,
-            "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), "
-            "auto: float while it fits [auto]")
-        ->check(CLI::IsMember({"double", "float", "compact", "auto"}))
-        ->type_name("STORAGE")
-        ->group("Transport");
-    command
-        .add_option("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]")
-        ->type_name("BYTES")
-        ->check(between(1.0, 1e18))
-        ->group("Transport");
+    const auto addChoice = [&](const char* name, auto& value, const std::string& text, const char* type,
+                               const std::vector<std::string>& choices) {
+        command.add_option(name, value, text)->check(CLI::IsMember(choices))->type_name(type)->group("Transport");
+    };
+    const auto addNumber = [&](const char* name, auto& value, const char* text, const char* type, double low,
+                               double high) {
+        command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
+    };
+    addChoice("--method", a.method,
+              fmt::format("How form factors are computed: {} [hemicube]", fmt::join(methodNames(), ", ")), "METHOD",
+              methodNames());
+    addNumber(
+        "--resolution", a.resolution,
+        "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a multiple of 4 "
+        "[220]; less if time or memory ask for it",
+        "R", 4.0, 4096.0);
+    addNumber("--hemicubes", a.hemicubes, "Hemicubes or hemispheres spread over a patch, 1 to 1024 [1]", "K", 1.0,
+              1024.0);
+    addChoice("--rotation", a.rotation, "Of these about their normals: random or fixed [random]", "HOW",
+              {"random", "fixed"});
+    addNumber(
+        "--lines", a.lines,
+        "Local lines per patch, 1 to 16777216 [32768], or global lines in all, up to 4294967295 [an eighth of the "
+        "hemicubes' rays]; less if time or memory ask for it",
+        "N", 1.0, 4294967295.0);
+    addChoice("--sampler", a.sampler, "Of lines: random, stratified, halton or sobol [sobol]", "SAMPLER",
+              {"random", "stratified", "halton", "sobol"});
+    addChoice("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]", "SET",
+              {"chords", "bundles"});
+    addNumber("--form-factor-error", a.formFactorError,
+              "Closed form: aimed at in partly hidden pairs, relative, 1e-8 to 0.1 [1e-4]", "E", 1e-8, 0.1);
+    addChoice(
+        "--storage", a.storage,
+        "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), auto: "
+        "float while it fits [auto]",
+        "STORAGE", {"double", "float", "compact", "auto"});
+    addNumber("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]", "BYTES",
+              1.0, 1e18);
     command
         .add_flag("--repair", a.repair,
                   "Makes the form factors reciprocal, A_i F_ij = A_j F_ji, and their rows sum to what they must")
