@@ -1,5 +1,4 @@
 #include "reader_checks.h"
-#include "temporary_folder.h"
 
 #include <fmt/format.h>
 
@@ -10,14 +9,9 @@ namespace {
 
 const std::string kVertices = "v a =\np 0 0 0\nn 0 0 1\nv b =\n\tp 1 0 0\nv c =\n\tp 0 1 0\n";
 
-class MgfErrors : public testing::Test {
+class MgfErrors : public ReaderTest {
 protected:
-    void expectError(const std::string& mgf, const std::string& part) {
-        SCOPED_TRACE(mgf.substr(0, 200));
-        expectInputError(folder.write("scene.mgf", mgf), part);
-    }
-
-    TemporaryFolder folder;
+    MgfErrors() : ReaderTest("scene.mgf") {}
 };
 
 TEST_F(MgfErrors, ErrorsCountContinuedLines) {

@@ -1,5 +1,4 @@
 #include "reader_checks.h"
-#include "temporary_folder.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
@@ -16,11 +15,10 @@ constexpr float kPi = glm::pi<float>();
 const std::string kVertices = "v a =\np 0 0 0\nn 0 0 1\nv b =\n\tp 1 0 0\nv c =\n\tp 0 1 0\n";
 const std::string kTriangle = kVertices + "f a b c\n";
 
-class MgfReader : public testing::Test {
+class MgfReader : public ReaderTest {
 protected:
-    ReadResult read(const std::string& mgf, const ReadOptions& options = {}) {
-        return readScene(folder.write("scene.mgf", mgf), options);
-    }
+    MgfReader() : ReaderTest("scene.mgf") {}
+
     /// The first corner of each polygon.
     std::vector<glm::vec3> places(const std::string& mgf, const ReadOptions& options = {}) {
         const Scene scene = read(mgf, options).scene;
@@ -29,8 +27,6 @@ protected:
         return result;
     }
     Material material(const std::string& mgf) { return read("m x =\n" + mgf + kTriangle).scene.materials.at(0); }
-
-    TemporaryFolder folder;
 };
 
 void expectNear(const glm::vec3& found, const glm::vec3& expected, float tolerance = 1e-6F) { // a few float roundings
@@ -81,10 +77,7 @@ TEST_F(MgfReader, ReadsTheSameFromAllLineEndingsAndContinuations) {
     };
     for (const std::string& mgf : variants) {
         SCOPED_TRACE(mgf);
-        const Scene scene = read(mgf).scene;
-        ASSERT_EQ(scene.polygons.size(), 1U);
-        EXPECT_EQ(corner(scene, scene.polygons[0], 1), glm::vec3(1, 0, 0));
-        EXPECT_EQ(corner(scene, scene.polygons[0], 2), glm::vec3(0, 1, 0));
+        expectUnitTriangle(read(mgf).scene);
     }
 }
 

@@ -1,5 +1,4 @@
 #include "reader_checks.h"
-#include "temporary_folder.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
@@ -11,17 +10,9 @@ namespace {
 
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-class ObjReader : public testing::Test {
+class ObjReader : public ReaderTest {
 protected:
-    ReadResult read(const std::string& obj, const ReadOptions& options = {}) {
-        return readScene(folder.write("scene.obj", obj), options);
-    }
-    void expectError(const std::string& obj, const std::string& part) {
-        SCOPED_TRACE(obj.substr(0, 200));
-        expectInputError(folder.write("scene.obj", obj), part);
-    }
-
-    TemporaryFolder folder;
+    ObjReader() : ReaderTest("scene.obj") {}
 };
 
 TEST_F(ObjReader, ReadsTrianglesAndQuadsInTheFilesOrder) {
@@ -56,11 +47,7 @@ TEST_F(ObjReader, ReadsTheSameFromAllLineEndingsTabsAndContinuations) {
         "v +0 .0 0.\nv 1e0 0 0\nv 0 1.0E+0 0 1\nvt 0\nvn 0 0 1\nf 1/1/1 2//1 3/1"};
     for (const std::string& obj : variants) {
         SCOPED_TRACE(obj);
-        const Scene scene = read(obj).scene;
-        ASSERT_EQ(scene.polygons.size(), 1U);
-        EXPECT_EQ(corner(scene, scene.polygons[0], 0), glm::vec3(0, 0, 0));
-        EXPECT_EQ(corner(scene, scene.polygons[0], 1), glm::vec3(1, 0, 0));
-        EXPECT_EQ(corner(scene, scene.polygons[0], 2), glm::vec3(0, 1, 0));
+        expectUnitTriangle(read(obj).scene);
     }
 }
 

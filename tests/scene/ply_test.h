@@ -1,7 +1,6 @@
 #pragma once
 
 #include "reader_checks.h"
-#include "temporary_folder.h"
 
 #include "scene/scene_builder.h"
 
@@ -45,15 +44,10 @@ private:
 };
 
 /// Reads PLY files given as text.
-class PlyTest : public testing::Test {
+class PlyTest : public ReaderTest {
 protected:
-    ReadResult read(const std::string& ply, const ReadOptions& options = {}) {
-        return readScene(folder.write("scene.ply", ply), options);
-    }
-    void expectError(const std::string& ply, const std::string& part) {
-        SCOPED_TRACE(ply.substr(0, 300));
-        expectInputError(folder.write("scene.ply", ply), part);
-    }
+    PlyTest() : ReaderTest("scene.ply") {}
+
     /// Expects the one quad of kQuad.
     void expectQuad(const std::string& ply) {
         SCOPED_TRACE(ply.substr(0, 400));
@@ -65,8 +59,6 @@ protected:
         EXPECT_EQ(corner(scene, scene.polygons[0], 2), glm::vec3(1, 1, 0));
         EXPECT_EQ(corner(scene, scene.polygons[0], 3), glm::vec3(0, 1, 0));
     }
-
-    TemporaryFolder folder;
 };
 
 } // namespace lambert

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "scene/scene_reader.h"
+#include "temporary_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -35,5 +36,33 @@ inline void expectInputError(const std::filesystem::path& file, const std::strin
         EXPECT_LT(message.size(), 500U) << message;
     }
 }
+
+/// Expects the triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) and nothing else.
+inline void expectUnitTriangle(const Scene& scene) {
+    ASSERT_EQ(scene.polygons.size(), 1U);
+    EXPECT_FALSE(scene.polygons[0].isQuad());
+    EXPECT_EQ(corner(scene, scene.polygons[0], 0), glm::vec3(0, 0, 0));
+    EXPECT_EQ(corner(scene, scene.polygons[0], 1), glm::vec3(1, 0, 0));
+    EXPECT_EQ(corner(scene, scene.polygons[0], 2), glm::vec3(0, 1, 0));
+}
+
+/// Reads files of one format whose content is given.
+class ReaderTest : public testing::Test {
+protected:
+    explicit ReaderTest(std::string fileName) : fileName_(std::move(fileName)) {}
+
+    ReadResult read(const std::string& content, const ReadOptions& options = {}) {
+        return readScene(folder.write(fileName_, content), options);
+    }
+    void expectError(const std::string& content, const std::string& part) {
+        SCOPED_TRACE(content.substr(0, 300));
+        expectInputError(folder.write(fileName_, content), part);
+    }
+
+    TemporaryFolder folder;
+
+private:
+    std::string fileName_;
+};
 
 } // namespace lambert

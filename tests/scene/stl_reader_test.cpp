@@ -1,5 +1,4 @@
 #include "reader_checks.h"
-#include "temporary_folder.h"
 
 #include <cmath>
 #include <cstring>
@@ -32,31 +31,21 @@ std::string binary(std::uint32_t count, std::initializer_list<std::array<float, 
 
 constexpr std::array<float, 9> kTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
-class StlReader : public testing::Test {
+class StlReader : public ReaderTest {
 protected:
-    ReadResult read(const std::string& stl, const ReadOptions& options = {}) {
-        return readScene(folder.write("scene.stl", stl), options);
-    }
-    void expectError(const std::string& stl, const std::string& part) {
-        SCOPED_TRACE(stl.substr(0, 300));
-        expectInputError(folder.write("scene.stl", stl), part);
-    }
+    StlReader() : ReaderTest("scene.stl") {}
+
     /// Expects the one triangle of kFacet, and returns what was read.
     ReadResult expectTriangle(const std::string& stl) {
         SCOPED_TRACE(stl.substr(0, 300));
         ReadResult result = read(stl);
         const Scene& scene = result.scene;
-        EXPECT_EQ(scene.polygons.size(), 1U);
-        EXPECT_EQ(corner(scene, scene.polygons.at(0), 0), glm::vec3(0, 0, 0));
-        EXPECT_EQ(corner(scene, scene.polygons[0], 1), glm::vec3(1, 0, 0));
-        EXPECT_EQ(corner(scene, scene.polygons[0], 2), glm::vec3(0, 1, 0));
+        expectUnitTriangle(scene);
         EXPECT_EQ(scene.materials.size(), 1U);
         EXPECT_EQ(scene.materials[0].name, "default");
         EXPECT_EQ(scene.materials[0].reflectance, Rgb(0.5F));
         return result;
     }
-
-    TemporaryFolder folder;
 };
 
 TEST_F(StlReader, NamesInLatin1BecomeUtf8) {
