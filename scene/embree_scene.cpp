@@ -14,7 +14,19 @@ namespace lambert {
 
 namespace {
 
-RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
+float largestCoordinate(const Bounds& bounds) {
+    const glm::vec3 largest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    return std::max({largest.x, largest.y, largest.z});
+}
+
+/// A power of two by which the largest coordinate comes to lie in [1/2, 1).
+float scaleToOne(const Bounds& bounds) {
+    int exponent = 0;
+    std::frexp(largestCoordinate(bounds), &exponent);
+    return std::ldexp(1.0F, std::clamp(-exponent, -120, 120));
+}
+
+RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set, float scale) {
     const Scene& scene = *set.scene;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
@@ -29,7 +41,7 @@ RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
     }
     for (const glm::vec3& position : scene.positions) {
         // Unused vertices may be anything in the file; Embree must not see them.
-        const glm::vec3 p = isFinite(position) ? position : glm::vec3(0.0F);
+        const glm::vec3 p = isFinite(position) ? scale * position : glm::vec3(0.0F);
         vertices = std::copy_n(std::array{p.x, p.y, p.z}.begin(), 3, vertices);
     }
     return geometry;
@@ -37,7 +49,7 @@ RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set) {
 
 } // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) {
+EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) : scale_(scaleToOne(boundsOf(scene))) {
     device_.reset(rtcNewDevice(nullptr));
     if (device_ == nullptr)
         throw SystemError(
@@ -58,7 +70,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) {
 
 void EmbreeScene::attach(GeometryId id, RTCFilterFunctionN filter) {
     if (sets_[id].polygons.empty()) return;
-    RTCGeometry geometry = quadGeometry(device_.get(), sets_[id]);
+    RTCGeometry geometry = quadGeometry(device_.get(), sets_[id], scale_);
     rtcSetGeometryUserData(geometry, &sets_[id]);
     rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcSetGeometryOccludedFilterFunction(geometry, filter);
@@ -74,10 +86,7 @@ bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane) {
                   RTCHitN_v(query.hit, query.N, lane));
 }
 
-float coordinateTolerance(const Bounds& bounds) {
-    const glm::vec3 largest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
-    return 1e-6F * std::max({largest.x, largest.y, largest.z});
-}
+float coordinateTolerance(const Bounds& bounds) { return 1e-6F * largestCoordinate(bounds); }
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

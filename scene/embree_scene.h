@@ -19,6 +19,10 @@ struct PolygonSet {
 
 /// The source polygons of a scene as Embree holds them, all as quads (a triangle repeats its last corner, and its chart is
 /// that of the quad's first half). Only for the casters in this folder.
+///
+/// Embree divides by products of lengths in single precision and loses hits where these are small, from areas of 1e-20 m²
+/// or, of short rays, 1e-12 m². So it gets all coordinates times a power of two that brings them to the order of 1, which
+/// changes no digit.
 class EmbreeScene {
 public:
     /// What is called for every hit before it counts; null: nothing. For polygons with holes and for all others, so that
@@ -34,6 +38,8 @@ public:
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     RTCScene handle() const { return embree_.get(); }
+    /// What the origins of rays must be multiplied by; in the same unit are the distances of rays of unit directions.
+    float scale() const { return scale_; }
     bool anyHoles() const { return !sets_[kWithHoles].polygons.empty(); }
     std::uint32_t polygonOf(unsigned geometry, unsigned primitive) const {
         return anyHoles() ? sets_[geometry].polygons[primitive] : primitive;
@@ -50,6 +56,7 @@ private:
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
     };
 
+    float scale_;
     std::array<PolygonSet, 2> sets_; //!< by GeometryId
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> embree_;

@@ -51,14 +51,14 @@ void noteCrossing(const RTCFilterFunctionNArguments* arguments) {
 }
 
 LAMBERT_VECTOR_CLONES
-void load(const LinePacket& packet, RTCRay16& rays) {
+void load(const LinePacket& packet, float scale, RTCRay16& rays) {
     for (int lane = 0; lane < LinePacket::kSize; ++lane) {
-        rays.org_x[lane] = packet.originX[lane];
-        rays.org_y[lane] = packet.originY[lane];
-        rays.org_z[lane] = packet.originZ[lane];
-        rays.dir_x[lane] = packet.directionX[lane];
-        rays.dir_y[lane] = packet.directionY[lane];
-        rays.dir_z[lane] = packet.directionZ[lane];
+        rays.org_x[lane] = scale * packet.originX[lane];
+        rays.org_y[lane] = scale * packet.originY[lane];
+        rays.org_z[lane] = scale * packet.originZ[lane];
+        rays.dir_x[lane] = scale * packet.directionX[lane];
+        rays.dir_y[lane] = scale * packet.directionY[lane];
+        rays.dir_z[lane] = scale * packet.directionZ[lane];
     }
     beginRays(rays, 1.0F);
 }
@@ -209,7 +209,7 @@ void LineCaster::cross(const LinePacket& packet, LineCrossings& crossings) const
     // Not as coherent rays: Embree's kernel for these reports some hits several times.
     rtcInitIntersectContext(&query.context);
     alignas(64) RTCRay16 rays;
-    load(packet, rays);
+    load(packet, impl_->embree.scale(), rays);
     // A shadow ray: all of whose hits are rejected needs no order, and finds all of them.
     rtcOccluded16(packet.active, impl_->embree.handle(), &query.context, &rays);
     if (query.outOfMemory) throw std::bad_alloc();

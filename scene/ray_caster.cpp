@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace lambert {
 
@@ -47,16 +48,16 @@ void turnOccluders(const Scene& scene, RayPacket& packet) {
             packet.facing[lane] = std::abs(packet.facing[lane]);
 }
 
-RTCRay embreeRay(const Ray& ray) {
+RTCRay embreeRay(const Ray& ray, float scale) {
     assert(isFinite(ray.origin) && isFinite(ray.direction)); // Debian's Embree aborts on such rays
     RTCRay result{};
-    result.org_x = ray.origin.x;
-    result.org_y = ray.origin.y;
-    result.org_z = ray.origin.z;
+    result.org_x = scale * ray.origin.x;
+    result.org_y = scale * ray.origin.y;
+    result.org_z = scale * ray.origin.z;
     result.dir_x = ray.direction.x;
     result.dir_y = ray.direction.y;
     result.dir_z = ray.direction.z;
-    result.tfar = ray.maxDistance;
+    result.tfar = std::min(scale * ray.maxDistance, std::numeric_limits<float>::max());
     result.mask = ~0U;
     return result;
 }
@@ -110,7 +111,7 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
-    query.ray = embreeRay(ray);
+    query.ray = embreeRay(ray, impl_->embree.scale());
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(impl_->embree.handle(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
@@ -118,30 +119,34 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     const std::uint32_t polygon = impl_->embree.polygonOf(query.hit.geomID, query.hit.primID);
     const bool front =
         glm::dot(ray.direction, normal) < 0.0F && !isOccluder(impl_->scene, impl_->scene.polygons[polygon]);
-    return Hit{polygon, query.hit.u, query.hit.v, query.ray.tfar, front};
+    return Hit{polygon, query.hit.u, query.hit.v, query.ray.tfar / impl_->embree.scale(), front};
 }
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     assert(isFinite(origin));
     alignas(64) RTCRayHit16 rays;
-    std::fill_n(rays.ray.org_x, RayPacket::kSize, origin.x);
-    std::fill_n(rays.ray.org_y, RayPacket::kSize, origin.y);
-    std::fill_n(rays.ray.org_z, RayPacket::kSize, origin.z);
+    const glm::vec3 scaled = impl_->embree.scale() * origin;
+    std::fill_n(rays.ray.org_x, RayPacket::kSize, scaled.x);
+    std::fill_n(rays.ray.org_y, RayPacket::kSize, scaled.y);
+    std::fill_n(rays.ray.org_z, RayPacket::kSize, scaled.z);
     impl_->trace(rays, packet);
 }
 
 void RayCaster::closest(const RayOrigins& origins, RayPacket& packet) const {
     alignas(64) RTCRayHit16 rays;
-    std::copy_n(origins.x, RayPacket::kSize, rays.ray.org_x);
-    std::copy_n(origins.y, RayPacket::kSize, rays.ray.org_y);
-    std::copy_n(origins.z, RayPacket::kSize, rays.ray.org_z);
+    const float scale = impl_->embree.scale();
+    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+        rays.ray.org_x[lane] = scale * origins.x[lane];
+        rays.ray.org_y[lane] = scale * origins.y[lane];
+        rays.ray.org_z[lane] = scale * origins.z[lane];
+    }
     impl_->trace(rays, packet);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay query = embreeRay(ray);
+    RTCRay query = embreeRay(ray, impl_->embree.scale());
     rtcOccluded1(impl_->embree.handle(), &context, &query);
     return query.tfar < 0.0F;
 }

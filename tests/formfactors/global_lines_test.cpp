@@ -240,6 +240,15 @@ TEST(GlobalLines, MeetOccludersOnTheirBack) {
     }
 }
 
+TEST(GlobalLines, AScaleOfAPowerOfTwoChangesNoDigit) {
+    const FormFactorMatrix metres = LinesCase(closedBox(kRoom432)).matrix({.lines = 10'000});
+    for (const int exponent : {-34, -20, 40}) {
+        const FormFactorMatrix scaled =
+            LinesCase(closedBox(std::ldexp(1.0F, exponent) * kRoom432)).matrix({.lines = 10'000});
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(scaled.row(i), metres.row(i)) << exponent;
+    }
+}
+
 TEST(GlobalLines, DoNotDependOnThreads) {
     const LinesCase c(roomWithBoxScene(), 500);
     for (const LineSet set : kSets) {

@@ -133,6 +133,22 @@ TEST(AllRayMethods, RowsCloseInAClosedBoxAndTwoSidesAreFound) {
     }
 }
 
+TEST(AllRayMethods, AScaleOfAPowerOfTwoChangesNoDigit) {
+    const auto rows = [](float scale) {
+        const ExactCase c(closedBox(scale * kRoom432));
+        const std::array<std::unique_ptr<FormFactorMethod>, 3> methods{
+            std::make_unique<Hemicube>(c.mesh, c.rays, HemicubeOptions{.resolution = 32}),
+            std::make_unique<Hemisphere>(c.mesh, c.rays, HemisphereOptions{.resolution = 32}),
+            std::make_unique<LocalLines>(c.mesh, c.rays, LocalLinesOptions{.lines = 1000})};
+        std::vector<FormFactorRow> result;
+        for (const auto& method : methods)
+            for (std::uint32_t i = 0; i < 6; ++i) result.push_back(rowOf(*method, i));
+        return result;
+    };
+    const std::vector<FormFactorRow> metres = rows(1.0F);
+    for (const int exponent : {-34, -20, 40}) EXPECT_EQ(rows(std::ldexp(1.0F, exponent)), metres) << exponent;
+}
+
 // Point and patch averages: from the centre of the floor the factors are those of a point, with many points those of the
 // patch. 5e-3: 64 stratified points of a smooth integrand.
 TEST(Hemisphere, ManyPerPatchGiveThePatchAverage) {
