@@ -21,11 +21,8 @@ constexpr double kTinyShare = 0.05;      // of the polygons
 constexpr std::size_t kNamesShown = 3;
 
 bool isSliver(const Scene& scene, const Polygon& polygon) {
-    float longest = 0.0F;
-    for (int k = 0; k < polygon.size(); ++k)
-        longest = std::max(longest,
-                           glm::distance(corner(scene, polygon, k), corner(scene, polygon, (k + 1) % polygon.size())));
-    return 2.0F * glm::length(areaVector(scene, polygon)) < 1e-4F * longest * longest;
+    const double longest = longestEdge(scene, polygon);
+    return 2.0 * polygonArea(scene, polygon) < 1e-4 * longest * longest;
 }
 
 void add(SceneFacts::Part& part, double area) {
@@ -191,7 +188,7 @@ SceneFacts gatherFacts(const Scene& scene, Progress& progress) {
     facts.materials.resize(scene.materials.size());
     facts.nodes.resize(scene.nodes.size());
     for (const Polygon& polygon : scene.polygons) {
-        const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
+        const auto area = polygonArea(scene, polygon);
         ++(polygon.isQuad() ? facts.quads : facts.triangles);
         facts.slivers += isSliver(scene, polygon) ? 1 : 0;
         add(facts.materials[polygon.material], area);

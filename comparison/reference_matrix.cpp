@@ -22,7 +22,7 @@ constexpr double kAreaTolerance = 1e-3;   ///< relative, between a file's patche
 
 /// Of the closed form where nothing is exact, in partly hidden factors: a tenth of the best that is compared.
 constexpr double kReferenceError = 1e-4;
-constexpr double kReferenceLines = 131072; // per patch, twice
+constexpr double kReferenceLines = 131072;   // per patch, twice
 constexpr std::size_t kMostIntegrated = 100; // polygons
 
 std::vector<std::vector<glm::dvec3>> polygons(const PatchMesh& mesh) {
@@ -104,7 +104,7 @@ bool isConvex(const Scene& scene) {
     return std::all_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
         const Material& material = scene.materials[polygon.material];
         if (material.occluder || material.hasHoles() || polygon.backMaterial != kNone) return false;
-        const glm::vec3 normal = glm::normalize(areaVector(scene, polygon));
+        const glm::vec3 normal = glm::vec3(glm::normalize(glm::dvec3(areaVector(scene, polygon))));
         const float plane = glm::dot(normal, corner(scene, polygon, 0)) - tolerance;
         return std::all_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& other) {
             for (int k = 0; k < other.size(); ++k)

@@ -11,9 +11,10 @@ public:
     PatchPoints(const PatchMesh& mesh, std::size_t patch)
         : corners_{mesh.position(patch, 0), mesh.position(patch, 1), mesh.position(patch, 2),
                    mesh.isQuad(patch) ? mesh.position(patch, 3) : mesh.position(patch, 2)} {
-        const glm::vec3 diagonal = corners_[2] - corners_[0];
-        area012_ = static_cast<double>(glm::length(glm::cross(corners_[1] - corners_[0], diagonal)));
-        area023_ = static_cast<double>(glm::length(glm::cross(diagonal, corners_[3] - corners_[0])));
+        // In double: the square of a small area does not exist in single precision.
+        const glm::dvec3 origin(corners_[0]), diagonal = glm::dvec3(corners_[2]) - origin;
+        area012_ = glm::length(glm::cross(glm::dvec3(corners_[1]) - origin, diagonal));
+        area023_ = glm::length(glm::cross(diagonal, glm::dvec3(corners_[3]) - origin));
         if (!(area012_ + area023_ > 0.0)) area012_ = 1.0; // a sliver: any of its points will do
     }
 

@@ -34,7 +34,7 @@ std::vector<Side> weightedSides(const Scene& scene, const Weight& weight) {
     double sum = 0.0;
     const auto add = [&](std::uint32_t polygon, bool back, std::uint32_t material) {
         if (material == kNone || scene.materials[material].occluder) return;
-        const double area = static_cast<double>(glm::length(areaVector(scene, scene.polygons[polygon])));
+        const double area = polygonArea(scene, scene.polygons[polygon]);
         const double own = weight(area, scene.materials[material]);
         if (own > 0.0) sides.push_back({polygon, back, sum += own});
     };
@@ -50,11 +50,12 @@ glm::vec3 pointOn(const Scene& scene, const Polygon& polygon, float one, float t
     std::array<int, 3> triangle{0, 1, 2};
     if (polygon.isQuad()) {
         const auto area = [&](int a, int b, int c) {
-            const glm::vec3 from = corner(scene, polygon, a);
-            return glm::length(glm::cross(corner(scene, polygon, b) - from, corner(scene, polygon, c) - from));
+            const glm::dvec3 from(corner(scene, polygon, a));
+            return glm::length(
+                glm::cross(glm::dvec3(corner(scene, polygon, b)) - from, glm::dvec3(corner(scene, polygon, c)) - from));
         };
-        const float first = area(0, 1, 2), second = area(0, 2, 3);
-        const float share = first / (first + second);
+        const double first = area(0, 1, 2), second = area(0, 2, 3);
+        const auto share = static_cast<float>(first / (first + second));
         if (one < share) {
             one /= share;
         } else {
@@ -114,7 +115,7 @@ BackFaceSample sample(const RayCaster& rays, const Weight& weight) {
         glm::vec3 normal(glm::cross(frame.axisX, frame.axisY)); // of a sliver better than its area vector
         if (side->back) normal = -normal;
         const auto random = philox({i, 0, 0, 0}, 0);
-        const float size = std::sqrt(glm::length(areaVector(scene, polygon)));
+        const auto size = static_cast<float>(std::sqrt(polygonArea(scene, polygon)));
         aim(frame, normal, i, packet);
         rays.closest(pointOn(scene, polygon, uniformFloat(random[0]), uniformFloat(random[1])) +
                          rays.originOffset(size) * normal,

@@ -190,7 +190,7 @@ void dividePolygon(std::uint32_t index, const Scene& scene, const EdgeDivision& 
         builder.addFaces(index, *faces);
     } else {
         ++report.undividedPolygons;
-        report.undividedArea += static_cast<double>(glm::length(areaVector(scene, polygon)));
+        report.undividedArea += polygonArea(scene, polygon);
         builder.addWhole(index);
     }
 }
@@ -227,7 +227,7 @@ PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
 double totalArea(const Scene& scene) {
     return std::accumulate(scene.polygons.begin(), scene.polygons.end(), 0.0, [&](double sum, const Polygon& polygon) {
         if (isOccluder(scene, polygon)) return sum;
-        const double area = static_cast<double>(glm::length(areaVector(scene, polygon)));
+        const double area = polygonArea(scene, polygon);
         return sum + (polygon.backMaterial != kNone ? 2.0 * area : area);
     });
 }

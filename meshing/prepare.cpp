@@ -19,12 +19,8 @@ namespace {
 
 /// Whether a polygon is no higher over its longest edge than `tolerance`: its vertices lie on its own edges.
 bool isNeedle(const Scene& scene, const Polygon& polygon, float tolerance) {
-    float longest = 0.0F;
-    for (int k = 0; k < polygon.size(); ++k)
-        longest = std::max(longest,
-                           glm::distance(corner(scene, polygon, k), corner(scene, polygon, (k + 1) % polygon.size())));
-    const float height = (polygon.isQuad() ? 1.0F : 2.0F) * glm::length(areaVector(scene, polygon)) / longest;
-    return !(height > tolerance);
+    const double height = (polygon.isQuad() ? 1.0 : 2.0) * polygonArea(scene, polygon) / longestEdge(scene, polygon);
+    return !(height > static_cast<double>(tolerance));
 }
 
 /// A polygon on welded vertices.

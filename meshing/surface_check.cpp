@@ -125,7 +125,7 @@ struct GrowingShell {
     explicit GrowingShell(const glm::vec3& point) { shell.bounds = {point, point}; }
 
     void add(const Scene& scene, const Polygon& polygon, const glm::dvec3& from) {
-        const auto area = static_cast<double>(glm::length(areaVector(scene, polygon)));
+        const auto area = polygonArea(scene, polygon);
         ++shell.polygons;
         shell.area += area;
         shell.volume += sixfoldVolume(scene, polygon, from) / 6.0;

@@ -3,6 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace lambert {
@@ -14,6 +15,18 @@ glm::vec3 areaVector(const Scene& scene, const Polygon& polygon) {
     const glm::dvec3 c(corner(scene, polygon, 2));
     if (!polygon.isQuad()) return glm::vec3(0.5 * glm::cross(b - a, c - a));
     return glm::vec3(0.5 * glm::cross(c - a, glm::dvec3(corner(scene, polygon, 3)) - b));
+}
+
+double longestEdge(const Scene& scene, const Polygon& polygon) {
+    double longest = 0.0;
+    for (int k = 0; k < polygon.size(); ++k)
+        longest = std::max(longest, glm::distance(glm::dvec3(corner(scene, polygon, k)),
+                                                  glm::dvec3(corner(scene, polygon, (k + 1) % polygon.size()))));
+    return longest;
+}
+
+double polygonArea(const Scene& scene, const Polygon& polygon) {
+    return glm::length(glm::dvec3(areaVector(scene, polygon)));
 }
 
 float Bounds::diagonal() const { return glm::length(size()); }

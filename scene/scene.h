@@ -118,8 +118,14 @@ inline bool isOccluder(const Scene& scene, const Polygon& polygon) {
     return scene.materials[polygon.material].occluder;
 }
 
+/// In metres.
+double longestEdge(const Scene& scene, const Polygon& polygon);
+
 /// Half the cross product of the diagonals: points to the front, its length is the area in m².
 glm::vec3 areaVector(const Scene& scene, const Polygon& polygon);
+
+/// In m². Unlike the length of the vector in single precision it is exact below 1e-19 m² too.
+double polygonArea(const Scene& scene, const Polygon& polygon);
 
 /// Axis-aligned box around all vertices that a polygon uses.
 struct Bounds {

@@ -23,6 +23,8 @@ namespace {
 constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finite
 constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
 constexpr std::size_t kMostFanCorners = 256;
+constexpr float kSmallestScene =
+    1e-10F; // metres: each of 10^8 patches has an area in single precision, with much to spare
 constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
 constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
 
@@ -38,11 +40,10 @@ SceneBuilder::CornerSurface finite(SceneBuilder::CornerSurface corner) {
     return corner;
 }
 
-/// As the kernels see it: their square of the area must be a normal number.
+/// As the kernels see it: a normal number in single precision, whose square is finite.
 bool hasArea(const Scene& scene, const Polygon& polygon) {
-    const glm::vec3 area = areaVector(scene, polygon);
-    const float squared = glm::dot(area, area);
-    return std::isnormal(squared);
+    const auto area = static_cast<float>(polygonArea(scene, polygon));
+    return std::isnormal(area) && std::isfinite(area * area);
 }
 
 /// Newell's normal: twice the area vector, also of polygons that are concave or not quite planar.
@@ -386,6 +387,11 @@ ReadResult SceneBuilder::finish() {
                                      "finite, {} without area",
                                      file_, report.inputPolygons, report.nonFinitePolygons, report.degeneratePolygons));
     }
+    if (const float size = boundsOf(result_.scene).diagonal(); size < kSmallestScene)
+        throw InputError(
+            fmt::format("{}: found a scene of {:.3g} m, expected at least {:.0e} m; --unit METRES scales it, "
+                        "where it is not glTF",
+                        file_, size, kSmallestScene));
     if (droppedFans_ > 0)
         warn(fmt::format("{} polygons of more than {} corners cross themselves and were dropped", droppedFans_,
                          kMostFanCorners));

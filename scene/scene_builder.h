@@ -98,7 +98,8 @@ public:
     /// Adds a line to the report, or throws it as InputError under `strict`: for what the scene names but does not have.
     void warnUnlessStrict(const std::string& text);
 
-    /// The scene and the report; the builder is empty afterwards. Throws InputError if no polygon is left.
+    /// The scene and the report; the builder is empty afterwards. Throws InputError if no polygon is left, or nothing larger
+    /// than 1e-10 m.
     ReadResult finish();
 
 private:

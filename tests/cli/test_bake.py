@@ -250,14 +250,24 @@ class TheLight(ProgramTest):
                           two["energy"]["emitted"][0], 0.01)
 
     def test_unit_changes_lengths_and_flux_but_not_irradiance(self):
-        metres, half, millimetres = (self.bake(CORNELL_OBJ, *SMALL, "--unit", unit) for unit in (1, 0.5, 0.001))
+        metres, half, *others = (self.bake(CORNELL_OBJ, *SMALL, "--unit", unit) for unit in (1, 0.5, 0.001, 1e-8))
         for first, second in zip(metres["materials"], half["materials"]):  # a power of two: no digit changes
             self.assertEqual(second["mean_irradiance"], first["mean_irradiance"], first["name"])
             self.assertEqual(second["area"], first["area"] / 4, first["name"])
-        for first, second in zip(metres["materials"], millimetres["materials"]):
-            self.assert_close(second["area"], 1e-6 * first["area"], 1e-4, first["name"])
-            # Rounding makes another mesh, and with it other random rotations: about 1 % with so few patches and rays.
-            self.assert_close(second["mean_irradiance"][0], first["mean_irradiance"][0], 0.04, first["name"])
+        for unit, scaled in zip((0.001, 1e-8), others):
+            for first, second in zip(metres["materials"], scaled["materials"]):
+                self.assert_close(second["area"], unit ** 2 * first["area"], 1e-4, first["name"])
+                # Rounding makes another mesh, and with it other random rotations: about 1 % with so few patches and rays.
+                self.assert_close(second["mean_irradiance"][0], first["mean_irradiance"][0], 0.04, first["name"])
+
+    def test_what_is_baked_of_a_tiny_scene_can_be_read(self):
+        target = self.folder / "tiny.ply"
+        patches = self.bake(CORNELL_OBJ, "--unit", 1e-9, "--patches", 3000, "--resolution", 8, "-o", target)["patches"]
+        self.assertGreater(patches, 2500)
+        self.assertIn(f"; {patches} in the file", run("info", target).stdout)
+        failed = run("bake", CORNELL_OBJ, "--unit", 1e-10, "-o", target)
+        self.assertEqual(failed.returncode, 3)
+        self.assertIn("found a scene of 9.61e-11 m, expected at least 1e-10 m", failed.stderr)
 
     def test_exposure_by_hand_and_auto(self):
         for typed, expected in (("2", 2), ("+2.5", 2.5), ("-3", -3)):

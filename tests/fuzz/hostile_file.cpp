@@ -70,7 +70,7 @@ void castRays(const Scene& scene, const RayCaster& rays, const PatchMesh& mesh) 
     const std::size_t step = scene.polygons.size() / kMostStarts + 1;
     for (std::size_t p = 0; p < scene.polygons.size(); p += step) {
         const glm::vec3 centre = polygonPoint(scene, static_cast<std::uint32_t>(p), 0.3F, 0.3F);
-        const glm::vec3 normal = glm::normalize(areaVector(scene, scene.polygons[p]));
+        const glm::vec3 normal(glm::normalize(glm::dvec3(areaVector(scene, scene.polygons[p]))));
         const glm::vec3 origin = centre + rays.originOffset(rays.bounds().diagonal()) * normal;
         for (unsigned octant = 0; octant < 8; ++octant) {
             const auto sign = [&](unsigned bit) { return (octant >> bit & 1U) != 0 ? 1.0F : -1.0F; };

@@ -31,8 +31,7 @@ void requireSoundPolygon(const Scene& scene, const Polygon& polygon) {
         require(polygon.vertices[static_cast<std::size_t>(k)] < scene.positions.size(), "a polygon's vertices exist");
         require(isFinite(corner(scene, polygon, k)), "a polygon's vertices are finite");
     }
-    const glm::vec3 area = areaVector(scene, polygon);
-    require(std::isnormal(glm::dot(area, area)), "a polygon has an area");
+    require(std::isnormal(static_cast<float>(polygonArea(scene, polygon))), "a polygon has an area");
     require(polygon.material < scene.materials.size(), "a polygon's material exists");
     require(polygon.node < scene.nodes.size(), "a polygon's node exists");
     require(isNoneOrIn(polygon.surface, scene.surfaces), "a polygon's surface exists");

@@ -13,7 +13,7 @@ namespace lambert {
 
 inline double totalArea(const Scene& scene) {
     double sum = 0.0;
-    for (const Polygon& polygon : scene.polygons) sum += double{glm::length(areaVector(scene, polygon))};
+    for (const Polygon& polygon : scene.polygons) sum += polygonArea(scene, polygon);
     return sum;
 }
 

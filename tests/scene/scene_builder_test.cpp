@@ -120,7 +120,7 @@ TEST_F(SceneBuilderTest, CountsEachKindOfDroppedPolygon) {
     addTriangle();
     add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});                       // on a line
     add({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}});                       // two vertices
-    add({{0, 0, 0}, {1e-11, 0, 0}, {0, 1e-11, 0}});               // squared area is 0 in single precision
+    add({{0, 0, 0}, {1e-20, 0, 0}, {0, 1e-20, 0}});               // the area is not a normal number
     add({{0, 0, 0}, {1e15, 0, 0}, {0, 1e15, 0}});                 // squared area overflows
     add({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}});            // there and back
     add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}); // five on a line
@@ -198,7 +198,7 @@ TEST_F(SceneBuilderTest, TwoSidedOptionAppliesToEveryMaterial) {
 }
 
 TEST_F(SceneBuilderTest, TreatsScaledPolygonsAlike) {
-    for (const double scale : {1e-8, 1.0, 1e8}) {
+    for (const double scale : {1e-10, 1e-8, 1.0, 1e8}) {
         SceneBuilder scaled("file", {});
         for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(0, 1, 0),
                                     glm::dvec3(-1, 0.5, 0)})
@@ -208,6 +208,34 @@ TEST_F(SceneBuilderTest, TreatsScaledPolygonsAlike) {
         const ReadResult result = scaled.finish();
         EXPECT_EQ(result.scene.polygons.size(), 4U) << scale;
         EXPECT_NEAR(totalArea(result.scene) / (scale * scale), 2.5, 1e-5) << scale; // single precision
+    }
+}
+
+// A patch of a scene that is accepted must itself be, or a baked scene could not be read.
+TEST_F(SceneBuilderTest, AcceptsAPatchOfTheSmallestSceneAndRefusesSmallerScenes) {
+    const auto addCorner = [](SceneBuilder& to, double size, double x) {
+        const auto a = to.addPosition({x, 0, 0});
+        const std::array triangle{a, to.addPosition({x + size, 0, 0}), to.addPosition({x, size, 0})};
+        to.addPolygon(triangle, 0, 0);
+    };
+    addCorner(builder, 1e-10, 0.0);
+    addCorner(builder, 1e-15, 0.0);
+    EXPECT_EQ(builder.finish().scene.polygons.size(), 2U);
+
+    SceneBuilder tooSmall("file", {});
+    tooSmall.addMaterial({});
+    addCorner(tooSmall, 5e-11, 1.0); // the corners are one in single precision
+    EXPECT_THROW(tooSmall.finish(), InputError);
+    SceneBuilder alsoTooSmall("file", {});
+    alsoTooSmall.addMaterial({});
+    addCorner(alsoTooSmall, 5e-11, 0.0);
+    try {
+        alsoTooSmall.finish();
+        ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("found a scene of 7.07e-11 m, expected at least 1e-10 m"),
+                  std::string::npos)
+            << error.what();
     }
 }
 
