@@ -118,7 +118,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.rows = assessRows(result.mesh, *result.rays, matrix);
     result.seconds.formFactors = watch.lap();
 
-    result.solution = solveJacobi(result.mesh, matrix, options.jacobi, progress);
+    StoredRows rows(matrix);
+    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
     result.seconds.solve = watch.lap();
 
     progress.begin("bake", 0);

@@ -3,7 +3,7 @@
 #include "baking/mesh_scene.h"
 #include "baking/reconstruction.h"
 #include "formfactors/matrix_source.h"
-#include "solver/jacobi.h"
+#include "solver/solver.h"
 
 #include <memory>
 #include <optional>
@@ -16,7 +16,7 @@ namespace lambert {
 struct BakeOptions {
     MeshOptions mesh;
     MatrixSource formFactors;
-    JacobiOptions jacobi;
+    SolverOptions solver;
     ReconstructionOptions reconstruction;
 };
 

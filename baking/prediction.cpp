@@ -67,8 +67,8 @@ Pilot pilotRows(const MeshedScene& scene, const FormFactorMethod& method, Progre
 }
 
 /// The residual falls about by what is reflected from one bounce to the next.
-double predictIterations(double reflected, const JacobiOptions& options) {
-    const double most = options.bounces > 0 ? std::min(options.bounces, options.maxIterations) : options.maxIterations;
+double predictIterations(double reflected, const SolverOptions& options) {
+    const double most = options.bounces > 0 ? options.bounces : 10'000;
     if (!(options.tolerance > 0.0)) return most;
     return std::clamp(std::log(options.tolerance) / std::log(std::clamp(reflected, 0.01, 0.999)) + 1.0, 1.0, most);
 }
@@ -96,7 +96,7 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     result.secondsPerRay = secondsPerRow / static_cast<double>(method->raysPerRow());
     result.seconds.formFactors = secondsPerRow * patches;
     result.seconds.solve =
-        predictIterations(pilot.reflected, options.jacobi) * entries * kSecondsPerEntry / threadCount();
+        predictIterations(pilot.reflected, options.solver) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;
     result.matrixBytes =
         static_cast<std::uint64_t>(entries * bytesPerFactor(*result.plan.options.storage) +

@@ -26,7 +26,7 @@ void furnace(Results& results, Progress& progress) {
     const Material wall = greyMaterial("wall", 0.5F, 1.0F);
     BakeOptions options;
     options.mesh.patches = 1000;
-    options.jacobi.tolerance = 1e-7;
+    options.solver.tolerance = 1e-7;
     const BakedScene baked =
         bakeScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
     double lowest = 1e30;
@@ -53,7 +53,7 @@ void cube6(Results& results, Progress& progress) {
     BakeOptions options;
     options.mesh.patches = 3456;
     options.formFactors.transport.resolution = 128;
-    options.jacobi.tolerance = 1e-7;
+    options.solver.tolerance = 1e-7;
     const BakedScene baked = bakeScene(boxScene(glm::vec3(1.0F), materials), options, progress);
     std::array<double, 6> sum{};
     std::array<double, 6> area{};
@@ -77,7 +77,7 @@ double energyImbalance(std::size_t patches, int resolution, Progress& progress) 
         options.mesh.patches = patches;
         options.formFactors.transport.resolution = resolution;
         options.formFactors.transport.seed = seed;
-        options.jacobi.tolerance = 1e-7;
+        options.solver.tolerance = 1e-7;
         const double imbalance = bakeScene(roomWithBoxScene(), options, progress).solution.energy.imbalance();
         squares += imbalance * imbalance;
     }

@@ -63,15 +63,7 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("DEGREES")
         ->check(between(0.0, 180.0))
         ->group("Solution");
-    command.add_option("--solver", a.solver, "[jacobi]")->check(CLI::IsMember({"jacobi"}))->group("Solution");
-    command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
-        ->type_name("T")
-        ->check(between(0.0, 1.0))
-        ->group("Solution");
-    command.add_option("--bounces", a.bounces, "At most so many bounces; 0: no limit [0]")
-        ->type_name("K")
-        ->check(between(0, 1e6))
-        ->group("Solution");
+    addSolverArguments(command, a);
 }
 
 void addRunArguments(CLI::App& command, RunArguments& a) {
@@ -144,8 +136,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
     options.mesh = meshOptions(a);
     options.formFactors = matrixSource(a, run);
-    options.jacobi.tolerance = a.tolerance.value_or(qualityOf(a.quality).tolerance);
-    options.jacobi.bounces = a.bounces;
+    options.solver = solverOptions(a);
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
 }

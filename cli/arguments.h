@@ -38,9 +38,9 @@ struct TransportArguments {
     std::filesystem::path checkpoint;
     bool resume = false;
     double checkpointInterval = 60.0; //!< seconds
-    // Solution
+    // Solution; see cli/solver_arguments.cpp
     std::string solver = "jacobi";
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, relaxation;
     int bounces = 0;
 };
 
@@ -71,7 +71,8 @@ const Quality& qualityOf(const std::string& name);
 
 void addMeshArguments(CLI::App& command, TransportArguments& arguments);
 void addFormFactorArguments(CLI::App& command, TransportArguments& arguments);
-void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< both, a matrix file, the solution
+void addSolverArguments(CLI::App& command, TransportArguments& arguments);
+void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< all of these, a matrix file, creases
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addCameraArguments(CLI::App& command, PictureArguments& arguments);  ///< size and camera
 void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< and file and samples
@@ -79,10 +80,12 @@ void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< a
 /// The options that belong together, checked. Throw UsageError.
 MeshOptions meshOptions(const TransportArguments& arguments);
 MatrixSource matrixSource(const TransportArguments& arguments, const RunArguments& run);
+SolverOptions solverOptions(const TransportArguments& arguments);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
 
 /// For reports: the options in force, and what a repair had to change (null: none was asked for).
 nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan);
+nlohmann::ordered_json solverOptionsJson(const SolverOptions& options);
 std::string repairText(const RepairReport& repair); ///< one line
 nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair);
 

@@ -58,10 +58,11 @@ std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
     for (const MaterialLight& light : materialLight(baked))
         text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
                             light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
-    return text + fmt::format("{} patches, {} bounces, residual {:.2g}, energy imbalance {:.2g}, exposure {:.2f} EV, "
-                              "{:.1f} s\n",
-                              baked.mesh.size(), baked.solution.iterations, baked.solution.residual,
-                              baked.solution.energy.imbalance(), exposure, seconds);
+    return text +
+           fmt::format("{} patches, {} iterations, residual {:.2g}, energy imbalance {:.2g}, exposure {:.2f} EV, "
+                       "{:.1f} s\n",
+                       baked.mesh.size(), baked.solution.iterations, baked.solution.residual,
+                       baked.solution.energy.imbalance(), exposure, seconds);
 }
 
 PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
@@ -131,9 +132,10 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) log.warning(warning);
-    log.line(fmt::format("{} patches, {}: {:.3g} rays, {} bounces to {:.1e}", baked.mesh.size(),
+    log.line(fmt::format("{} patches, {}: {:.3g} rays; {}: {} iterations to {:.1e}", baked.mesh.size(),
                          baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
-                         static_cast<double>(baked.rayCount), baked.solution.iterations, baked.solution.residual),
+                         static_cast<double>(baked.rayCount), nameOf(options.solver.method), baked.solution.iterations,
+                         baked.solution.residual),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));
 
@@ -159,9 +161,9 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.imbalance = baked.solution.energy.imbalance();
     if (baked.journal) baked.journal->remove();
     log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
-    if (baked.solution.residual > options.jacobi.tolerance && options.jacobi.bounces == 0) {
+    if (baked.solution.residual > options.solver.tolerance && options.solver.bounces == 0) {
         log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", baked.solution.residual,
-                                options.jacobi.tolerance));
+                                options.solver.tolerance));
         outcome.exitCode = ExitCode::TargetMissed;
     }
     return outcome;

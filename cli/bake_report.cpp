@@ -35,8 +35,7 @@ Json optionsJson(const BakeReportInput& in) {
     options["crease_angle"] = in.transport.creaseAngle;
     options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
     options["quality"] = in.transport.quality;
-    options["tolerance"] = bakeOptions(in.transport, in.run).jacobi.tolerance;
-    options["bounces"] = in.transport.bounces;
+    options.update(solverOptionsJson(solverOptions(in.transport)));
     options["threads"] = threadCount();
     return options;
 }

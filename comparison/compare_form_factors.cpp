@@ -3,7 +3,7 @@
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "formfactors/matrix_quality.h"
-#include "solver/jacobi.h"
+#include "solver/solver.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace lambert {
 namespace {
 
 /// Small against what is compared, so that the solver's error is not taken for the matrix's.
-constexpr JacobiOptions kSolve{.tolerance = 1e-7};
+constexpr SolverOptions kSolve{.tolerance = 1e-7};
 
 constexpr std::array kErrors{
     Measure{"relative_rms", "relative RMS", "RMS of F / F_ref − 1 over the pairs with F_ref above the threshold.",
@@ -73,7 +73,7 @@ public:
         result_.referenceSeconds = processorSeconds() - start;
         result_.reference = reference_.description;
         result_.referenceError = reference_.ownError;
-        if (result_.lit) result_.referenceSolution = solveJacobi(scene_.mesh, reference_.matrix, kSolve, progress_);
+        if (result_.lit) result_.referenceSolution = solved(reference_.matrix);
         for (const auto& [method, efforts] : options_.ladders) {
             MethodResult& of = result_.methods.emplace_back();
             of.method = method;
@@ -131,12 +131,17 @@ private:
         run.columnClosure = columns.rms;
         run.reciprocity = quality.reciprocityRms;
         if (result_.lit) {
-            const RadiositySolution solution = solveJacobi(scene_.mesh, matrix, kSolve, progress_);
+            const RadiositySolution solution = solved(matrix);
             run.radiosity = radiosityError(scene_.mesh, solution.radiosity, result_.referenceSolution.radiosity);
         }
         if (shown == nullptr) return;
         shown->misdirectedBy = std::move(errors.misdirectedBy);
         shown->columnClosure = std::move(columns.error);
+    }
+
+    RadiositySolution solved(const FormFactorMatrix& matrix) {
+        StoredRows rows(matrix);
+        return solve(SolverProblem(scene_.mesh), rows, kSolve, progress_);
     }
 
     const MeshedScene& scene_;

@@ -1,26 +1,23 @@
 #pragma once
 
 #include "core/progress.h"
-#include "formfactors/form_factor_matrix.h"
-#include "meshing/patch_mesh.h"
+#include "solver/form_factor_rows.h"
+#include "solver/problem.h"
 #include "solver/solution.h"
 
 namespace lambert {
 
 struct JacobiOptions {
-    double tolerance = 1e-4; //!< stop once the relative residual is at most this; 0: only `bounces` decides
-    int bounces = 0;         //!< stop after so many iterations, each of which adds one bounce; 0: no limit
+    double tolerance = 1e-4;  //!< stop once the relative residual is at most this; 0: only `bounces` decides
+    int bounces = 0;          //!< stop after so many iterations, each of which adds one bounce; 0: no limit
+    bool keepBounces = false; //!< keep what each iteration added: 12 bytes per patch and bounce
     int maxIterations = 10'000;
 };
 
-/// Solves B = B_e + ρ F B by Jacobi iteration from B = B_e: one iteration gathers one bounce.
+/// Solves the problem by Jacobi iteration from B = B_e: one iteration gathers one bounce, the first one that of E_0 too.
 ///
-/// `matrix` has one row per patch of `mesh`. A limit reached before the tolerance is not an error; see `residual`.
-/// Throws InputError if nothing emits light, Cancelled.
-RadiositySolution solveJacobi(const PatchMesh& mesh, const FormFactorMatrix& matrix, const JacobiOptions& options,
+/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled.
+RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows, const JacobiOptions& options,
                               Progress& progress);
-
-/// All terms of the energy balance of a solution, each from its own definition.
-EnergyBalance energyBalance(const PatchMesh& mesh, const FormFactorMatrix& matrix, const RadiositySolution& solution);
 
 } // namespace lambert

@@ -25,7 +25,7 @@ struct EnergyBalance {
 };
 
 struct SolverStep {
-    int iteration = 0;
+    int iteration = 0;     //!< of Southwell's method: patches shot
     double residual = 0.0; //!< relative, area-weighted
     double seconds = 0.0;  //!< since the solver's start
 };
@@ -37,8 +37,11 @@ struct RadiositySolution {
     std::vector<float> covered;     //!< #patches, F_back: near 1 for a patch inside another object
     EnergyBalance energy;
     std::vector<SolverStep> history;
+    /// #bounces × #patches: radiosity that each added to B_e; [0] is light that was reflected once. Empty unless kept.
+    std::vector<std::vector<Rgb>> bounces;
     int iterations = 0;
-    double residual = 0.0; //!< ‖B_e + ρ(E_0 + F B) − B‖ / ‖B_e + ρE_0‖ at the last iteration
+    /// ‖B_e + ρ(E_0 + F B) − B‖ / ‖B_e + ρE_0‖ of the last iterate, area-weighted. `radiosity` is one bounce further.
+    double residual = 0.0;
 };
 
 } // namespace lambert

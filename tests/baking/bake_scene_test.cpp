@@ -18,7 +18,7 @@ BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
     BakeOptions options;
     options.mesh.patches = patches;
     options.formFactors.transport.resolution = resolution;
-    options.jacobi.tolerance = 1e-6;
+    options.solver.tolerance = 1e-6;
     Progress progress;
     return bakeScene(scene, options, progress);
 }

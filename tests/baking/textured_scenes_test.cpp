@@ -87,8 +87,8 @@ BakedScene bake(const Scene& scene, double patchLength, int bounces, int resolut
     BakeOptions options;
     options.mesh.patchLength = patchLength;
     options.formFactors.transport.resolution = resolution;
-    options.jacobi.tolerance = 1e-8;
-    options.jacobi.bounces = bounces;
+    options.solver.tolerance = 1e-8;
+    options.solver.bounces = bounces;
     options.formFactors.transport.randomRotation = false;
     Progress progress;
     return bakeScene(scene, options, progress);

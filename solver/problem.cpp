@@ -1,0 +1,45 @@
+#include "solver/problem.h"
+
+#include "core/error.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace lambert {
+
+SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance)
+    : mesh_(mesh), direct_(std::move(directIrradiance)) {
+    double squares = 0.0;
+    bool lit = false;
+    for (std::size_t i = 0; i < size(); ++i) {
+        const RgbSum b = source(i);
+        squares += area(i) * glm::dot(b, b);
+        const RgbSum e = direct(i);
+        lit = lit || area(i) * glm::dot(e, e) > 0.0;
+    }
+    if (!(squares > 0.0) && !lit) throw InputError("the scene has no light: no material emits");
+    sourceNorm_ = std::sqrt(squares);
+}
+
+std::vector<RgbSum> SolverProblem::emitted() const {
+    std::vector<RgbSum> result(size());
+    for (std::size_t i = 0; i < size(); ++i) result[i] = emitted(i);
+    return result;
+}
+
+double SolverProblem::sumOfSquares(std::span<const RgbSum> values) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < size(); ++i) sum += area(i) * glm::dot(values[i], values[i]);
+    return sum;
+}
+
+double SolverProblem::relativeNorm(std::span<const RgbSum> values) const { return relativeNorm(sumOfSquares(values)); }
+
+double SolverProblem::relativeNorm(double sumOfSquares) const {
+    // Where lights without area fall on nothing but black, there is no radiosity at all.
+    return sourceNorm_ > 0.0 ? std::sqrt(sumOfSquares) / sourceNorm_ : 0.0;
+}
+
+} // namespace lambert

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "meshing/patch_mesh.h"
+#include "solver/solution.h"
+
+#include <span>
+#include <vector>
+
+namespace lambert {
+
+/// What is to be solved, but for the form factors, for every patch i and channel:
+///
+///     B_i = B_e,i + ρ_i E_i,   E_i = E_0,i + Σ_j F_ij B_j
+class SolverProblem {
+public:
+    /// `mesh` must outlive the problem. `directIrradiance` is E_0 per m², from lights without area: #patches, or empty where
+    /// there are none. Throws InputError if nothing emits and nothing is lit.
+    explicit SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance = {});
+
+    std::size_t size() const { return mesh_.size(); } //!< #patches
+    const PatchMesh& mesh() const { return mesh_; }
+
+    double area(std::size_t i) const { return static_cast<double>(mesh_.area[i]); }                    //!< A, m²
+    RgbSum reflectance(std::size_t i) const { return RgbSum(mesh_.reflectance[i]); }                   //!< ρ
+    RgbSum emitted(std::size_t i) const { return RgbSum(mesh_.emittedRadiosity[i]); }                  //!< B_e
+    RgbSum direct(std::size_t i) const { return direct_.empty() ? RgbSum(0.0) : direct_[i]; }          //!< E_0
+    RgbSum source(std::size_t i) const { return emitted(i) + reflectance(i) * direct(i); }             //!< B_e + ρ E_0
+    RgbSum radiosity(std::size_t i, const RgbSum& e) const { return emitted(i) + reflectance(i) * e; } //!< B_e + ρ E
+
+    std::vector<RgbSum> emitted() const; //!< #patches, B_e
+
+    /// sqrt(Σ A |value|²) over patches and channels, divided by that of B_e + ρ E_0.
+    double relativeNorm(std::span<const RgbSum> values) const;
+    /// The same from the sum of squares.
+    double relativeNorm(double sumOfSquares) const;
+
+private:
+    double sumOfSquares(std::span<const RgbSum> values) const;
+
+    const PatchMesh& mesh_;
+    std::vector<RgbSum> direct_;
+    double sourceNorm_ = 0.0;
+};
+
+} // namespace lambert

@@ -1,0 +1,67 @@
+#include "solver/solver.h"
+
+#include "core/error.h"
+#include "solver/gauss_seidel.h"
+#include "solver/jacobi.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lambert {
+
+namespace {
+
+struct SolverTraits {
+    SolverMethod method;
+    std::string_view name;
+};
+
+constexpr std::array kSolvers{SolverTraits{SolverMethod::Jacobi, "jacobi"},
+                              SolverTraits{SolverMethod::GaussSeidel, "gauss-seidel"}};
+
+} // namespace
+
+std::optional<SolverMethod> solverByName(std::string_view name) {
+    for (const SolverTraits& traits : kSolvers)
+        if (traits.name == name) return traits.method;
+    return std::nullopt;
+}
+
+std::string_view nameOf(SolverMethod method) {
+    return std::find_if(kSolvers.begin(), kSolvers.end(), [&](const auto& t) { return t.method == method; })->name;
+}
+
+std::vector<std::string> solverNames() {
+    std::vector<std::string> names;
+    for (const SolverTraits& traits : kSolvers) names.emplace_back(traits.name);
+    return names;
+}
+
+void checkSolver(const SolverOptions& o) {
+    const auto refuse = [&](const char* option) {
+        throw UsageError(fmt::format("{}: means nothing to the solver {}", option, nameOf(o.method)));
+    };
+    if (o.method != SolverMethod::Jacobi) {
+        if (o.bounces != 0) refuse("--bounces");
+        if (o.keepBounces) refuse("--keep-bounces");
+    }
+    if (o.relaxation && o.method != SolverMethod::GaussSeidel) refuse("--relaxation");
+    if (o.relaxation && !(*o.relaxation > 0.0 && *o.relaxation < 2.0))
+        throw UsageError(fmt::format("--relaxation: found {}, allowed are numbers above 0 and below 2", *o.relaxation));
+}
+
+RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& o,
+                        Progress& progress) {
+    checkSolver(o);
+    switch (o.method) {
+    case SolverMethod::Jacobi:
+        return solveJacobi(problem, rows, {o.tolerance, o.bounces, o.keepBounces}, progress);
+    case SolverMethod::GaussSeidel:
+        return solveGaussSeidel(problem, rows, {o.tolerance, o.relaxation.value_or(1.0)}, progress);
+    }
+    throw UsageError("no such solver"); // not reached
+}
+
+} // namespace lambert

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/progress.h"
+#include "solver/form_factor_rows.h"
+#include "solver/problem.h"
+#include "solver/solution.h"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace lambert {
+
+/// The one place where a solver is made from its name and options: what a new one needs beside its own files is a line in the
+/// table and the switch of solver.cpp.
+enum class SolverMethod { Jacobi, GaussSeidel };
+
+std::optional<SolverMethod> solverByName(std::string_view name);
+std::string_view nameOf(SolverMethod method);
+std::vector<std::string> solverNames();
+
+struct SolverOptions {
+    SolverMethod method = SolverMethod::Jacobi;
+    double tolerance = 1e-4;            //!< stop once the relative residual is at most this
+    int bounces = 0;                    //!< Jacobi: see there
+    bool keepBounces = false;           //!< Jacobi: see there
+    std::optional<double> relaxation{}; //!< Gauss-Seidel: see there; none: 1
+};
+
+/// Throws UsageError for what can be known to be wrong without a problem: options out of range, or of another solver.
+void checkSolver(const SolverOptions& options);
+
+/// Solves the problem. Throws UsageError as above, Cancelled. A residual above the tolerance is not an error.
+RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
+                        Progress& progress);
+
+} // namespace lambert
