@@ -4,7 +4,7 @@
 
 namespace lambert {
 
-void gatherAll(const FormFactorRows& rows, std::span<const RgbSum> radiosity, std::span<RgbSum> irradiance,
+void gatherAll(FormFactorRows& rows, std::span<const RgbSum> radiosity, std::span<RgbSum> irradiance,
                const Progress& progress) {
     parallelFor(rows.size(), 64, [&](std::size_t begin, std::size_t end, int) {
         progress.throwIfCancelled();
@@ -12,21 +12,21 @@ void gatherAll(const FormFactorRows& rows, std::span<const RgbSum> radiosity, st
     });
 }
 
-void StoredRows::row(std::uint32_t patch, FormFactorRow& row) const {
+void StoredRows::row(std::uint32_t patch, FormFactorRow& row) {
     row.entries.clear();
     matrix_.visit(patch, [&](std::uint32_t j, double factor) { row.entries.push_back({j, factor}); });
     row.back = matrix_.back(patch);
     row.out = matrix_.out(patch);
 }
 
-RgbSum StoredRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity) const {
+RgbSum StoredRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity) {
     RgbSum sum(0.0);
     matrix_.visit(patch, [&](std::uint32_t j, double factor) { sum += factor * radiosity[j]; });
     return sum;
 }
 
 RgbSum StoredRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity, PatchRange aside,
-                          std::vector<FormFactor>& inside) const {
+                          std::vector<FormFactor>& inside) {
     inside.clear();
     RgbSum sum(0.0);
     matrix_.visit(patch, [&](std::uint32_t j, double factor) {

@@ -18,7 +18,7 @@ struct PatchRange {
 };
 
 /// The form factors as a solver sees them: it does not know whether they are stored or computed when asked for.
-/// Rows may be asked for by several threads at a time.
+/// gather() may be called by several threads at a time.
 class FormFactorRows {
 public:
     FormFactorRows() = default;
@@ -28,16 +28,18 @@ public:
 
     virtual std::size_t size() const = 0; //!< #patches
 
-    virtual void row(std::uint32_t patch, FormFactorRow& row) const = 0;
+    virtual void row(std::uint32_t patch, FormFactorRow& row) = 0;
 
     /// Σ_j F_ij B_j for i = `patch`; `radiosity` is B, #patches.
-    virtual RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity) const = 0;
+    virtual RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity) = 0;
 
     /// The same over all patches j outside `aside`; the factors to those inside replace what is in `inside`.
     virtual RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity, PatchRange aside,
-                          std::vector<FormFactor>& inside) const = 0;
+                          std::vector<FormFactor>& inside) = 0;
 
-    /// Says that the row of patches.front() is asked for next, and probably those of the others after it.
+    /// How many patches expect() would like to be told before row() is asked for that of `patch`; 0: none.
+    virtual std::size_t wanted(std::uint32_t /*patch*/) const { return 0; }
+    /// Says whose rows row() is soon asked for, the next one first. The same rows come, but maybe sooner.
     virtual void expect(std::span<const std::uint32_t> /*patches*/) {}
 
     /// Makes back() and out() known of all patches: before, they are of the rows that have been asked for. Throws Cancelled.
@@ -47,7 +49,7 @@ public:
 };
 
 /// irradiance_i = Σ_j F_ij B_j for all patches, in parallel; both #patches. Throws Cancelled.
-void gatherAll(const FormFactorRows& rows, std::span<const RgbSum> radiosity, std::span<RgbSum> irradiance,
+void gatherAll(FormFactorRows& rows, std::span<const RgbSum> radiosity, std::span<RgbSum> irradiance,
                const Progress& progress);
 
 /// Rows of a matrix, which must outlive this.
@@ -56,10 +58,10 @@ public:
     explicit StoredRows(const FormFactorMatrix& matrix) : matrix_(matrix) {}
 
     std::size_t size() const override { return matrix_.size(); }
-    void row(std::uint32_t patch, FormFactorRow& row) const override;
-    RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity) const override;
+    void row(std::uint32_t patch, FormFactorRow& row) override;
+    RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity) override;
     RgbSum gather(std::uint32_t patch, std::span<const RgbSum> radiosity, PatchRange aside,
-                  std::vector<FormFactor>& inside) const override;
+                  std::vector<FormFactor>& inside) override;
     double back(std::uint32_t patch) const override { return matrix_.back(patch); }
     double out(std::uint32_t patch) const override { return matrix_.out(patch); }
 

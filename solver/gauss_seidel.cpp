@@ -26,7 +26,7 @@ struct Gathered {
 
 } // namespace
 
-double gaussSeidelSweep(const SolverProblem& problem, const FormFactorRows& rows, double relaxation,
+double gaussSeidelSweep(const SolverProblem& problem, FormFactorRows& rows, double relaxation,
                         std::vector<RgbSum>& radiosity, const Progress& progress) {
     double squares = 0.0;
     std::array<Gathered, kBlock> gathered;

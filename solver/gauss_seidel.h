@@ -25,7 +25,7 @@ RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows&
 
 /// One sweep over `radiosity`, #patches: B_i += W (B_e,i + ρ_i (E_0,i + Σ_j F_ij B_j) − B_i). Returns Σ A |change|² over
 /// patches and channels. Throws Cancelled.
-double gaussSeidelSweep(const SolverProblem& problem, const FormFactorRows& rows, double relaxation,
+double gaussSeidelSweep(const SolverProblem& problem, FormFactorRows& rows, double relaxation,
                         std::vector<RgbSum>& radiosity, const Progress& progress);
 
 } // namespace lambert

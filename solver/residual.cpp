@@ -4,7 +4,7 @@
 
 namespace lambert {
 
-double gatherResidual(const SolverProblem& problem, const FormFactorRows& rows, RadiositySolution& solution,
+double gatherResidual(const SolverProblem& problem, FormFactorRows& rows, RadiositySolution& solution,
                       const Progress& progress) {
     solution.irradiance.resize(problem.size());
     gatherAll(rows, solution.radiosity, solution.irradiance, progress);

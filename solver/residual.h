@@ -8,7 +8,7 @@
 namespace lambert {
 
 /// Gathers E = E_0 + F B of the solution's radiosity B, and returns its relative residual. Throws Cancelled.
-double gatherResidual(const SolverProblem& problem, const FormFactorRows& rows, RadiositySolution& solution,
+double gatherResidual(const SolverProblem& problem, FormFactorRows& rows, RadiositySolution& solution,
                       const Progress& progress);
 
 } // namespace lambert

@@ -4,6 +4,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace lambert {
@@ -25,9 +26,9 @@ struct EnergyBalance {
 };
 
 struct SolverStep {
-    int iteration = 0;     //!< of Southwell's method: patches shot
-    double residual = 0.0; //!< relative, area-weighted
-    double seconds = 0.0;  //!< since the solver's start
+    std::int64_t iteration = 0; //!< of Southwell's method: patches shot
+    double residual = 0.0;      //!< relative, area-weighted
+    double seconds = 0.0;       //!< since the solver's start
 };
 
 /// The light on every patch.
@@ -39,7 +40,7 @@ struct RadiositySolution {
     std::vector<SolverStep> history;
     /// #bounces × #patches: radiosity that each added to B_e; [0] is light that was reflected once. Empty unless kept.
     std::vector<std::vector<Rgb>> bounces;
-    int iterations = 0;
+    std::int64_t iterations = 0; //!< of Southwell's method: patches shot
     /// ‖B_e + ρ(E_0 + F B) − B‖ / ‖B_e + ρE_0‖ of the last iterate, area-weighted. `radiosity` is one bounce further.
     double residual = 0.0;
 };

@@ -1,8 +1,10 @@
 #include "solver/solver.h"
 
 #include "core/error.h"
+#include "solver/conjugate_gradient.h"
 #include "solver/gauss_seidel.h"
 #include "solver/jacobi.h"
+#include "solver/southwell.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +21,9 @@ struct SolverTraits {
 };
 
 constexpr std::array kSolvers{SolverTraits{SolverMethod::Jacobi, "jacobi"},
-                              SolverTraits{SolverMethod::GaussSeidel, "gauss-seidel"}};
+                              SolverTraits{SolverMethod::GaussSeidel, "gauss-seidel"},
+                              SolverTraits{SolverMethod::Southwell, "southwell"},
+                              SolverTraits{SolverMethod::ConjugateGradient, "conjugate-gradient"}};
 
 } // namespace
 
@@ -47,6 +51,8 @@ void checkSolver(const SolverOptions& o) {
         if (o.bounces != 0) refuse("--bounces");
         if (o.keepBounces) refuse("--keep-bounces");
     }
+    if (!(o.tolerance > 0.0) && o.bounces == 0)
+        throw UsageError("--tolerance: 0 is never reached; allowed with --bounces");
     if (o.relaxation && o.method != SolverMethod::GaussSeidel) refuse("--relaxation");
     if (o.relaxation && !(*o.relaxation > 0.0 && *o.relaxation < 2.0))
         throw UsageError(fmt::format("--relaxation: found {}, allowed are numbers above 0 and below 2", *o.relaxation));
@@ -60,6 +66,10 @@ RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, cons
         return solveJacobi(problem, rows, {o.tolerance, o.bounces, o.keepBounces}, progress);
     case SolverMethod::GaussSeidel:
         return solveGaussSeidel(problem, rows, {o.tolerance, o.relaxation.value_or(1.0)}, progress);
+    case SolverMethod::Southwell:
+        return solveSouthwell(problem, rows, {o.tolerance}, progress);
+    case SolverMethod::ConjugateGradient:
+        return solveConjugateGradient(problem, rows, {o.tolerance}, progress);
     }
     throw UsageError("no such solver"); // not reached
 }

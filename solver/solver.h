@@ -13,15 +13,15 @@ namespace lambert {
 
 /// The one place where a solver is made from its name and options: what a new one needs beside its own files is a line in the
 /// table and the switch of solver.cpp.
-enum class SolverMethod { Jacobi, GaussSeidel };
+enum class SolverMethod { Jacobi, GaussSeidel, Southwell, ConjugateGradient };
 
 std::optional<SolverMethod> solverByName(std::string_view name);
 std::string_view nameOf(SolverMethod method);
 std::vector<std::string> solverNames();
 
 struct SolverOptions {
-    SolverMethod method = SolverMethod::Jacobi;
-    double tolerance = 1e-4;            //!< stop once the relative residual is at most this
+    SolverMethod method = SolverMethod::ConjugateGradient;
+    double tolerance = 1e-4;            //!< stop once the relative residual is at most this; 0: only `bounces` decides
     int bounces = 0;                    //!< Jacobi: see there
     bool keepBounces = false;           //!< Jacobi: see there
     std::optional<double> relaxation{}; //!< Gauss-Seidel: see there; none: 1

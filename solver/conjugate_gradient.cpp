@@ -1,0 +1,177 @@
+// Orthomin(2): P. K. W. Vinsome, Orthomin, an iterative method for solving sparse sets of simultaneous linear equations,
+//   4th SPE Symposium on Reservoir Simulation, 1976.
+// Where it converges: S. C. Eisenstat, H. C. Elman, M. H. Schultz, Variational iterative methods for nonsymmetric systems of
+//   linear equations, SIAM J. Numer. Anal. 20(2), 1983.
+//
+// With z = sqrt(A ρ) E the equation E = E_0 + F (B_e + ρ E) becomes (I − S) z = b, where
+//
+//     S_ij = sqrt(A_i ρ_i) F_ij sqrt(ρ_j / A_j),   b = sqrt(A ρ) (E_0 + F B_e).
+//
+// S is symmetric if A_i F_ij = A_j F_ji, and I − S positive definite if besides rows sum to at most 1 and ρ < 1. Patches of
+// ρ = 0 drop out by themselves. On a symmetric system Orthomin is the method of conjugate residuals, as fast as conjugate
+// gradients. On form factors from rays S is not quite symmetric; then a direction is made conjugate only to the two before it,
+// and yet no step lets the residual grow.
+#include "solver/conjugate_gradient.h"
+
+#include "core/stopwatch.h"
+#include "solver/energy_balance.h"
+#include "solver/residual.h"
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace lambert {
+
+namespace {
+
+using Vector = std::vector<RgbSum>;
+
+constexpr std::size_t kDirections = 2;
+
+/// Per channel.
+RgbSum dot(const Vector& a, const Vector& b) {
+    RgbSum sum(0.0);
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/// a / b, 0 for a channel that has come to its end.
+RgbSum ratio(const RgbSum& a, const RgbSum& b) {
+    RgbSum result(0.0);
+    for (int c = 0; c < 3; ++c)
+        if (b[c] > 0.0) result[c] = a[c] / b[c];
+    return result;
+}
+
+void add(Vector& a, const RgbSum& factor, const Vector& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
+}
+
+class SymmetrisedSystem {
+public:
+    SymmetrisedSystem(const SolverProblem& problem, FormFactorRows& rows) : problem_(problem), rows_(rows) {}
+
+    std::size_t size() const { return problem_.size(); }
+    /// sqrt(A ρ)
+    RgbSum scale(std::size_t i) const { return glm::sqrt(problem_.area(i) * problem_.reflectance(i)); }
+    /// sqrt(ρ / A) z: the radiosity that is reflected.
+    RgbSum reflected(std::size_t i, const RgbSum& z) const {
+        return glm::sqrt(problem_.reflectance(i) / problem_.area(i)) * z;
+    }
+
+    /// product = (I − S) z
+    void apply(const Vector& z, Vector& product, const Progress& progress) {
+        radiosity_.resize(size());
+        for (std::size_t i = 0; i < size(); ++i) radiosity_[i] = reflected(i, z[i]);
+        gatherAll(rows_, radiosity_, product, progress);
+        for (std::size_t i = 0; i < size(); ++i) product[i] = z[i] - scale(i) * product[i];
+    }
+
+    /// The relative residual of the radiosities from that of z.
+    double relativeNorm(const Vector& residual) const {
+        double squares = 0.0;
+        for (std::size_t i = 0; i < size(); ++i)
+            squares += glm::dot(problem_.reflectance(i) * residual[i], residual[i]);
+        return problem_.relativeNorm(squares);
+    }
+
+private:
+    const SolverProblem& problem_;
+    FormFactorRows& rows_;
+    Vector radiosity_;
+};
+
+struct Direction {
+    Vector p, product; ///< product = (I − S) p
+    RgbSum square{0.0};
+};
+
+class Orthomin {
+public:
+    Orthomin(SymmetrisedSystem& system, Vector residual) : system_(system), residual_(std::move(residual)) {}
+
+    const Vector& residual() const { return residual_; }
+    /// Whether the last step has still made the residual smaller.
+    bool falls() const { return falls_; }
+
+    /// Goes to the smallest residual along the next direction.
+    void step(Vector& z, const Progress& progress) {
+        Direction next{residual_, Vector(residual_.size()), {}};
+        system_.apply(residual_, next.product, progress);
+        for (const Direction& earlier : directions_) {
+            if (earlier.p.empty()) continue;
+            const RgbSum share = ratio(dot(next.product, earlier.product), earlier.square);
+            add(next.p, -share, earlier.p);
+            add(next.product, -share, earlier.product);
+        }
+        next.square = dot(next.product, next.product);
+        const RgbSum length = ratio(dot(residual_, next.product), next.square);
+        add(z, length, next.p);
+        add(residual_, -length, next.product);
+        const RgbSum squares = dot(residual_, residual_);
+        const double sum = squares.x + squares.y + squares.z;
+        falls_ = sum < squares_;
+        squares_ = sum;
+        directions_[oldest_] = std::move(next);
+        oldest_ = (oldest_ + 1) % kDirections;
+    }
+
+private:
+    SymmetrisedSystem& system_;
+    Vector residual_;
+    std::array<Direction, kDirections> directions_;
+    std::size_t oldest_ = 0;
+    double squares_ = std::numeric_limits<double>::infinity(); ///< of residual_, all channels
+    bool falls_ = true;
+};
+
+} // namespace
+
+RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFactorRows& rows,
+                                         const ConjugateGradientOptions& options, Progress& progress) {
+    constexpr double kEnough = 0.5; // less is gained by another start only where rounding is all that is left
+    const Stopwatch watch;
+    const std::size_t count = problem.size();
+    SymmetrisedSystem system(problem, rows);
+    RadiositySolution solution;
+    solution.radiosity = problem.emitted();
+    Vector z(count, RgbSum(0.0));
+    progress.begin("solve", 0);
+    const auto record = [&] { solution.history.push_back({solution.iterations, solution.residual, watch.seconds()}); };
+    solution.residual = gatherResidual(problem, rows, solution, progress);
+    ++solution.iterations;
+    record();
+    for (double before = 2.0 * solution.residual / kEnough; solution.residual > options.tolerance &&
+                                                            solution.residual <= kEnough * before &&
+                                                            solution.iterations < options.maxIterations;) {
+        before = solution.residual;
+        Vector residual(count);
+        for (std::size_t i = 0; i < count; ++i) residual[i] = system.scale(i) * solution.irradiance[i] - z[i];
+        Orthomin method(system, std::move(residual));
+        do {
+            method.step(z, progress);
+            solution.residual = system.relativeNorm(method.residual());
+            ++solution.iterations;
+            record();
+            progress.advance();
+        } while (solution.residual > options.tolerance && solution.iterations < options.maxIterations &&
+                 method.falls());
+        // The residual that was updated from step to step is not believed at the end.
+        for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
+        solution.residual = gatherResidual(problem, rows, solution, progress);
+        ++solution.iterations;
+        record();
+    }
+    progress.end();
+    // One more bounce, which was gathered for the residual.
+    for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.radiosity(i, solution.irradiance[i]);
+    settle(problem, rows, solution, progress);
+    return solution;
+}
+
+} // namespace lambert

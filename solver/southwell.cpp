@@ -1,0 +1,109 @@
+// M. F. Cohen, S. E. Chen, J. R. Wallace, D. P. Greenberg, A progressive refinement approach to fast radiosity image
+//   generation, SIGGRAPH 1988.
+// S. Gortler, M. F. Cohen, P. Slusallek, Radiosity and relaxation methods, IEEE CG&A 14(6), 1994: why it is Southwell's.
+#include "solver/southwell.h"
+
+#include "core/stopwatch.h"
+#include "solver/energy_balance.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace lambert {
+
+namespace {
+
+double sumOfChannels(const RgbSum& v) { return v.x + v.y + v.z; }
+
+} // namespace
+
+Southwell::Southwell(const SolverProblem& problem, FormFactorRows& rows)
+    : problem_(problem), rows_(rows), irradiance_(problem.size()), unshot_(problem.size()), power_(problem.size()) {
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+        irradiance_[i] = problem.direct(i);
+        unshot_[i] = problem.source(i);
+        power_[i] = problem.area(i) * sumOfChannels(unshot_[i]);
+    }
+}
+
+std::uint32_t Southwell::brightest() const {
+    return static_cast<std::uint32_t>(std::max_element(power_.begin(), power_.end()) - power_.begin());
+}
+
+void Southwell::shoot(std::uint32_t patch) {
+    if (const std::size_t count = rows_.wanted(patch); count > 0) expect(patch, count);
+    rows_.row(patch, row_);
+    const RgbSum shot = std::exchange(unshot_[patch], RgbSum(0.0));
+    power_[patch] = 0.0;
+    const double area = problem_.area(patch);
+    for (const FormFactor& factor : row_.entries) {
+        const std::uint32_t j = factor.patch;
+        const RgbSum received = factor.value * (area / problem_.area(j)) * shot;
+        irradiance_[j] += received;
+        unshot_[j] += problem_.reflectance(j) * received;
+        power_[j] = problem_.area(j) * sumOfChannels(unshot_[j]);
+    }
+}
+
+/// Names the patch and those that are most likely to follow it.
+void Southwell::expect(std::uint32_t patch, std::size_t count) {
+    std::vector<std::uint32_t> patches(problem_.size());
+    std::iota(patches.begin(), patches.end(), 0U);
+    const auto last = patches.begin() + static_cast<std::ptrdiff_t>(std::min(count, patches.size()));
+    std::partial_sort(patches.begin(), last, patches.end(), [&](std::uint32_t a, std::uint32_t b) {
+        if ((a == patch) != (b == patch)) return a == patch;
+        return power_[a] != power_[b] ? power_[a] > power_[b] : a < b;
+    });
+    patches.erase(last, patches.end());
+    rows_.expect(patches);
+}
+
+std::vector<RgbSum> Southwell::radiosity() const {
+    std::vector<RgbSum> result(problem_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = problem_.radiosity(i, irradiance_[i]);
+    return result;
+}
+
+std::vector<RgbSum> Southwell::displayedRadiosity() const {
+    double area = 0.0;
+    RgbSum reflected(0.0), unshot(0.0);
+    for (std::size_t i = 0; i < problem_.size(); ++i) {
+        area += problem_.area(i);
+        reflected += problem_.area(i) * problem_.reflectance(i);
+        unshot += problem_.area(i) * unshot_[i];
+    }
+    const RgbSum ambient = unshot / area / (RgbSum(1.0) - reflected / area);
+    std::vector<RgbSum> result = radiosity();
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] += problem_.reflectance(i) * ambient;
+    return result;
+}
+
+RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
+                                 Progress& progress) {
+    const Stopwatch watch;
+    const std::size_t count = problem.size();
+    // To measure the residual takes as long as to look for the brightest patch, and somewhat more.
+    const auto interval = std::clamp<std::size_t>(count / 16, 1, 1024);
+    const auto limit = options.maxShotsPerPatch * static_cast<double>(count);
+    RadiositySolution solution;
+    Southwell method(problem, rows);
+    progress.begin("solve", 0);
+    solution.residual = method.residual();
+    while (solution.residual > options.tolerance && static_cast<double>(solution.iterations) < limit) {
+        for (std::size_t k = 0; k < interval; ++k) {
+            method.shoot(method.brightest());
+            progress.advance();
+        }
+        solution.iterations += static_cast<std::int64_t>(interval);
+        solution.residual = method.residual();
+        solution.history.push_back({solution.iterations, solution.residual, watch.seconds()});
+    }
+    progress.end();
+    solution.radiosity = method.radiosity();
+    solution.irradiance = method.irradiance();
+    settle(problem, rows, solution, progress);
+    return solution;
+}
+
+} // namespace lambert

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/progress.h"
+#include "solver/form_factor_rows.h"
+#include "solver/problem.h"
+#include "solver/solution.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lambert {
+
+/// Progressive radiosity, shot by shot. Light that a patch has received and not yet passed on is its unshot radiosity ΔB; at
+/// first that is B_e + ρ E_0.
+///
+/// F_ji = F_ij A_i / A_j is taken from the row of the patch that shoots: where rows are not reciprocal, the radiosities are
+/// those that go with the transposed rows.
+class Southwell {
+public:
+    /// Both must outlive this.
+    Southwell(const SolverProblem& problem, FormFactorRows& rows);
+
+    /// The patch with the most unshot power, Σ_c A ΔB^c; the first of several.
+    std::uint32_t brightest() const;
+    /// Passes its unshot radiosity on to all patches: ΔB_j += ρ_j F_ji ΔB_i.
+    void shoot(std::uint32_t patch);
+
+    /// sqrt(Σ A |ΔB|²), relative: the residual of the radiosities that have been shot.
+    double residual() const { return problem_.relativeNorm(unshot_); }
+
+    const std::vector<RgbSum>& irradiance() const { return irradiance_; } //!< #patches, E by what has been shot
+    std::vector<RgbSum> radiosity() const; //!< #patches, B_e + ρ E, unshot light included
+
+    /// The same and the ambient term: a guess at what the unshot light will become after all bounces. For display only.
+    std::vector<RgbSum> displayedRadiosity() const;
+
+private:
+    void expect(std::uint32_t patch, std::size_t count);
+
+    const SolverProblem& problem_;
+    FormFactorRows& rows_;
+    std::vector<RgbSum> irradiance_;
+    std::vector<RgbSum> unshot_; ///< ΔB
+    std::vector<double> power_;  ///< Σ_c A ΔB^c
+    FormFactorRow row_;
+};
+
+struct SouthwellOptions {
+    double tolerance = 1e-4;          //!< stop once the relative residual is at most this; above 0
+    double maxShotsPerPatch = 10'000; //!< on average
+};
+
+/// Solves the problem by Southwell's method: the patch with the most unshot power shoots next. With computed rows no matrix
+/// is stored. The history has a step every so many shots.
+///
+/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled.
+RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
+                                 Progress& progress);
+
+} // namespace lambert
