@@ -27,14 +27,17 @@ RgbSum StoredRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity
 
 RgbSum StoredRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity, PatchRange aside,
                           std::vector<FormFactor>& inside) {
-    inside.clear();
+    // No call that could grow the vector inside the loop: it would keep the sum out of the registers.
+    inside.resize(aside.end - aside.begin);
+    FormFactor* next = inside.data();
     RgbSum sum(0.0);
     matrix_.visit(patch, [&](std::uint32_t j, double factor) {
         if (aside.contains(j))
-            inside.push_back({j, factor});
+            *next++ = {j, factor};
         else
             sum += factor * radiosity[j];
     });
+    inside.resize(static_cast<std::size_t>(next - inside.data()));
     return sum;
 }
 
