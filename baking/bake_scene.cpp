@@ -4,6 +4,7 @@
 #include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/matrix_quality.h"
+#include "solver/computed_rows.h"
 
 #include <fmt/format.h>
 
@@ -24,11 +25,11 @@ struct BacksMet {
 };
 
 /// The material whose black back is met most by rays from the patches that meet most of them.
-BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
+BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorRows& rows) {
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
-        const double back = matrix.back(patch);
+        const double back = rows.back(patch);
         return back <= kCovered ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
@@ -62,26 +63,56 @@ BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFac
     return {scene.materials[static_cast<std::size_t>(most - met.begin())].name, onBacks / (onBacks + occluded)};
 }
 
-RowQuality assessRows(const PatchMesh& mesh, const RayCaster& rays, const FormFactorMatrix& matrix) {
-    RowQuality quality;
+/// How much of the rays meets backs. The rows must know all back().
+void assessBacks(const PatchMesh& mesh, const RayCaster& rays, const FormFactorRows& rows, RowQuality& quality) {
     double receivingArea = 0.0;
     double backArea = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const FormFactorRow row = matrix.row(i);
-        quality.largestClosureError = std::max(quality.largestClosureError, std::abs(row.sum() - 1.0));
-        if (row.back > kCovered) continue;
+        const double back = rows.back(static_cast<std::uint32_t>(i));
+        if (back > kCovered) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
-        backArea += static_cast<double>(mesh.area[i]) * row.back;
+        backArea += static_cast<double>(mesh.area[i]) * back;
     }
-    quality.entries = matrix.entryCount();
-    quality.bytes = matrix.bytes();
     quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
     if (quality.backFaceFraction > kBackFaceWarning) {
-        const BacksMet met = mostMetBack(mesh, rays, matrix);
+        const BacksMet met = mostMetBack(mesh, rays, rows);
         quality.backFaceFraction *= met.unwanted;
         quality.backFaceMaterial = met.material;
     }
-    return quality;
+}
+
+/// The matrix first, then the light.
+void solveStored(const BakeOptions& options, BakedScene& result, Progress& progress) {
+    Stopwatch watch;
+    SceneMatrix obtained = obtainMatrix(options.formFactors, result.mesh, *result.rays, progress);
+    const FormFactorMatrix& matrix = obtained.matrix;
+    result.plan = std::move(obtained.plan);
+    result.repair = std::move(obtained.repair);
+    result.journal = std::move(obtained.journal);
+    result.rayCount = result.plan ? result.plan->rays : 0;
+    StoredRows rows(matrix);
+    assessBacks(result.mesh, *result.rays, rows, result.rows);
+    for (std::size_t i = 0; i < matrix.size(); ++i)
+        result.rows.largestClosureError =
+            std::max(result.rows.largestClosureError, std::abs(matrix.row(i).sum() - 1.0));
+    result.rows.entries = matrix.entryCount();
+    result.rows.bytes = matrix.bytes();
+    result.seconds.formFactors = watch.lap();
+    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
+    result.seconds.solve = watch.lap();
+}
+
+/// Rows are computed as the solver asks for them.
+void solveComputed(const BakeOptions& options, BakedScene& result, Progress& progress) {
+    Stopwatch watch;
+    result.plan = planTransport(options.formFactors.transport, result.mesh, *result.rays, progress);
+    const auto method = makeMethod(*result.plan, result.mesh, *result.rays);
+    ComputedRows rows(*method);
+    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
+    result.rayCount = rows.rowsComputed() * method->raysPerRow();
+    result.rows.largestClosureError = rows.largestClosureError();
+    assessBacks(result.mesh, *result.rays, rows, result.rows);
+    result.seconds.solve = watch.lap();
 }
 
 void collectWarnings(BakedScene& result) {
@@ -109,18 +140,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     BakedScene result{meshLitScene(scene, options.mesh, progress)};
     result.seconds.mesh = watch.lap();
 
-    SceneMatrix obtained = obtainMatrix(options.formFactors, result.mesh, *result.rays, progress);
-    const FormFactorMatrix& matrix = obtained.matrix;
-    result.plan = std::move(obtained.plan);
-    result.repair = std::move(obtained.repair);
-    result.journal = std::move(obtained.journal);
-    result.rayCount = result.plan ? result.plan->rays : 0;
-    result.rows = assessRows(result.mesh, *result.rays, matrix);
-    result.seconds.formFactors = watch.lap();
-
-    StoredRows rows(matrix);
-    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
-    result.seconds.solve = watch.lap();
+    (options.formFactors.transport.stored ? solveStored : solveComputed)(options, result, progress);
+    watch.lap();
 
     progress.begin("bake", 0);
     result.baked =

@@ -31,7 +31,7 @@ struct RowQuality {
     double backFaceFraction =
         0.0; //!< of the rays from patches that can receive light, area-weighted; occluders are none
     std::string backFaceMaterial; //!< whose back they meet most often; empty if they meet none
-    std::size_t entries = 0;      //!< of the matrix
+    std::size_t entries = 0;      //!< of the matrix; 0 without one
     std::size_t bytes = 0;
 };
 
@@ -50,7 +50,8 @@ struct BakedScene : MeshedScene {
     std::vector<std::string> warnings{}; //!< one line each
 };
 
-/// meshLitScene, then form factors, solution, and reconstruction at the vertices. Throws InputError if the scene
+/// meshLitScene, then form factors (without a matrix: while the solver works), solution, and reconstruction at the vertices.
+/// Throws InputError if the scene
 /// has no light, Cancelled.
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress);
 

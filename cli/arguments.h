@@ -39,9 +39,10 @@ struct TransportArguments {
     bool resume = false;
     double checkpointInterval = 60.0; //!< seconds
     // Solution; see cli/solver_arguments.cpp
-    std::string solver = "jacobi";
+    std::optional<std::string> solver;
     std::optional<double> tolerance, relaxation;
     int bounces = 0;
+    bool keepBounces = false;
 };
 
 struct RunArguments {

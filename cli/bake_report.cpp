@@ -61,6 +61,23 @@ Json meshJson(const BakedScene& baked) {
             {"separated_faces", baked.separatedFaces}};
 }
 
+Json historyJson(const RadiositySolution& solution) {
+    Json history = Json::array();
+    for (const SolverStep& step : solution.history)
+        history.push_back({{"iteration", step.iteration}, {"residual", step.residual}, {"seconds", step.seconds}});
+    return history;
+}
+
+Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
+    Json bounces = Json::array();
+    for (const std::vector<Rgb>& bounce : solution.bounces) {
+        RgbSum flux(0.0);
+        for (std::size_t i = 0; i < bounce.size(); ++i) flux += static_cast<double>(mesh.area[i]) * RgbSum(bounce[i]);
+        bounces.push_back({{"reflected", jsonVector(flux)}});
+    }
+    return bounces;
+}
+
 } // namespace
 
 Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
@@ -120,9 +137,11 @@ Json bakeReport(const BakeReportInput& in) {
     report["patches"] = baked.mesh.size();
     report["vertices"] = baked.baked.positions.size();
     report["method"] = baked.plan ? nameOf(baked.plan->options.method) : "file";
-    report["solver"] = in.transport.solver;
+    report["solver"] = nameOf(solverOptions(in.transport).method);
     report["iterations"] = baked.solution.iterations;
     report["residual"] = baked.solution.residual;
+    report["history"] = historyJson(baked.solution);
+    if (!baked.solution.bounces.empty()) report["bounces"] = bouncesJson(baked.mesh, baked.solution);
     report["rays"] = baked.rayCount;
     report["peak_memory_bytes"] = peakMemoryBytes();
     report["options"] = optionsJson(in);

@@ -279,6 +279,7 @@ void writeReport(Run& run, double seconds) {
 ExitCode formFactors(const FormFactorsArguments& a) {
     check(a);
     MatrixSource source = matrixSource(a.transport, a.run);
+    if (!source.transport.stored) throw UsageError("--storage none: is for solvers; form factors are a matrix");
     if (!a.temperatures.empty()) source.repair = true; // or flows do not add up
     checkFiles(a);
     applyThreads(a.run);

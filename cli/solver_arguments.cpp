@@ -8,7 +8,9 @@ namespace lambert {
 void addSolverArguments(CLI::App& command, TransportArguments& a) {
     command
         .add_option("--solver", a.solver,
-                    fmt::format("How the light of all bounces is found: {} [jacobi]", fmt::join(solverNames(), ", ")))
+                    fmt::format("How the light of all bounces is found: {} [conjugate-gradient; jacobi for --bounces "
+                                "and --keep-bounces]",
+                                fmt::join(solverNames(), ", ")))
         ->check(CLI::IsMember(solverNames()))
         ->type_name("SOLVER")
         ->group("Solution");
@@ -21,6 +23,10 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
         ->check(between(0, 1e6))
         ->group("Solution");
     command
+        .add_flag("--keep-bounces", a.keepBounces,
+                  "Jacobi: keeps what each bounce adds, 12 bytes per patch each, and reports it (--json)")
+        ->group("Solution");
+    command
         .add_option("--relaxation", a.relaxation,
                     "Gauss-Seidel: above 1, below 2 over-relaxes, which pays in bright rooms [1]")
         ->type_name("W")
@@ -30,9 +36,13 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
 
 SolverOptions solverOptions(const TransportArguments& a) {
     SolverOptions options;
-    options.method = solverByName(a.solver).value();
+    const bool byBounce = a.bounces > 0 || a.keepBounces;
+    options.method = a.solver   ? solverByName(*a.solver).value()
+                     : byBounce ? SolverMethod::Jacobi
+                                : SolverMethod::ConjugateGradient;
     options.tolerance = a.tolerance.value_or(qualityOf(a.quality).tolerance);
     options.bounces = a.bounces;
+    options.keepBounces = a.keepBounces;
     options.relaxation = a.relaxation;
     checkSolver(options);
     return options;
@@ -43,6 +53,7 @@ nlohmann::ordered_json solverOptionsJson(const SolverOptions& options) {
     Json json;
     json["tolerance"] = options.tolerance;
     json["bounces"] = options.bounces;
+    json["keep_bounces"] = options.keepBounces;
     json["relaxation"] =
         options.method == SolverMethod::GaussSeidel ? Json(options.relaxation.value_or(1.0)) : Json(nullptr);
     return json;

@@ -30,6 +30,13 @@ void refuseUnused(const TransportArguments& a, TransportMethod method) {
     if (!a.checkpoint.empty() && !hasRows(method)) refuse("--checkpoint");
 }
 
+/// A solver that computes its rows takes them as they come.
+void refuseWithoutMatrix(const TransportArguments& a) {
+    if (a.repair) throw UsageError("--repair: needs the whole matrix, not --storage none");
+    if (!a.formFactors.empty()) throw UsageError("--form-factors: is a matrix to be stored, not --storage none");
+    if (!a.checkpoint.empty()) throw UsageError("--checkpoint: keeps rows of a matrix, not of --storage none");
+}
+
 void refuseBesideFile(const TransportArguments& a) {
     if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || a.lineSet ||
         a.formFactorError || !a.checkpoint.empty())
@@ -74,8 +81,8 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
     addChoice(
         "--storage", a.storage,
         "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), auto: "
-        "float while it fits [auto]",
-        "STORAGE", {"double", "float", "compact", "auto"});
+        "float while it fits; none: rows are computed when a solver needs them, for --solver southwell [auto]",
+        "STORAGE", {"double", "float", "compact", "none", "auto"});
     addNumber("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]", "BYTES",
               1.0, 1e18);
     command
@@ -112,7 +119,8 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     options.lineSet = a.lineSet.value_or("chords") == "bundles" ? LineSet::Bundles : LineSet::Chords;
     options.error = a.formFactorError.value_or(options.error);
     options.seed = run.seed;
-    options.storage = storageByName(a.storage); // none for auto
+    options.stored = a.storage != "none";
+    options.storage = storageByName(a.storage); // no value for auto
     options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
     options.largestResolution = quality.resolution;
     options.mostRays = quality.rays;
@@ -120,6 +128,7 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     source.repair = a.repair;
     source.checkpoint = {a.checkpoint, a.resume, a.checkpointInterval};
     source.version = LAMBERT_VERSION;
+    if (!options.stored) refuseWithoutMatrix(a);
     if (a.formFactors.empty())
         refuseUnused(a, options.method);
     else
@@ -144,7 +153,7 @@ nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::
     json["form_factor_error"] =
         plan && method == TransportMethod::ClosedForm ? Json(plan->options.error) : Json(nullptr);
     const auto storage = plan ? plan->options.storage : source.transport.storage;
-    json["storage"] = nameOf(storage.value_or(MatrixStorage::Double));
+    json["storage"] = source.transport.stored ? nameOf(storage.value_or(MatrixStorage::Double)) : "none";
     json["memory_limit"] = source.transport.memoryLimit;
     json["repair"] = source.repair;
     json["form_factors"] = source.file.empty() ? Json(nullptr) : Json(source.file.string());

@@ -94,6 +94,7 @@ FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh
 SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, const RayCaster& rays, Progress& progress) {
     SceneMatrix result;
     std::vector<double> weights;
+    if (!source.transport.stored) throw UsageError("--storage none: only a solver can do without a matrix");
     if (!source.file.empty()) {
         progress.begin("read form factors", 0);
         result.matrix = importMatrix(source.file, mesh, source.transport);

@@ -164,6 +164,8 @@ void checkTransport(const TransportOptions& o) {
     if (o.method == TransportMethod::LocalLines && o.lines && (*o.lines < 1 || *o.lines > 1U << 24))
         refuse("--lines", *o.lines, "1 to 16777216 per patch");
     if (!(o.error >= 1e-8 && o.error <= 0.1)) refuse("--form-factor-error", o.error, "1e-8 to 0.1");
+    if (!o.stored && !hasRows(o.method))
+        throw UsageError(fmt::format("--storage none: {} computes no single rows", nameOf(o.method)));
     if (o.perPatch < 1 || o.perPatch > 1024) refuse("--hemicubes", o.perPatch, "1 to 1024");
 }
 
@@ -180,6 +182,7 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
         plan.rays = method ? method->raysPerRow() * mesh.size() : *plan.options.lines;
         const bool last = effort == ladder.back();
         if (!last && static_cast<double>(plan.rays) > options.mostRays) continue;
+        if (!options.stored) return plan;
         // A dense matrix as float, or as asked for, needs no closer look.
         if (planMemory(plan, patches, patches) && (options.storage || plan.options.storage == MatrixStorage::Float))
             return plan;

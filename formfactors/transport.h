@@ -47,7 +47,8 @@ struct TransportOptions {
     double error = 1e-4; //!< of the closed form, see there
 
     std::uint64_t seed = 1;
-    std::optional<MatrixStorage> storage;               //!< none: float while it fits the memory, else compact
+    bool stored = true;                   //!< false: rows are computed whenever they are asked for, no matrix is made
+    std::optional<MatrixStorage> storage; //!< none: float while it fits the memory, else compact
     std::uint64_t memoryLimit = std::uint64_t{8} << 30; //!< bytes for the form factors
 
     /// Of hemicubes where none is given, 16 to 4096; other methods take about as many rays.
@@ -57,9 +58,9 @@ struct TransportOptions {
 
 /// What a computation is going to take.
 struct TransportPlan {
-    TransportOptions options;   //!< with the method's resolution or lines, and the storage, filled in
+    TransportOptions options;   //!< with the method's resolution or lines, and the storage (if stored), filled in
     std::uint64_t rays = 0;     //!< in all
-    double bytes = 0.0;         //!< of the matrix, about; of small ones an upper bound
+    double bytes = 0.0;         //!< of the matrix, about; of small ones an upper bound; 0 without one
     std::string effort() const; //!< "hemicube, resolution 128", for logs
 };
 

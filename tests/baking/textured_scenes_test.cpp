@@ -88,6 +88,7 @@ BakedScene bake(const Scene& scene, double patchLength, int bounces, int resolut
     options.mesh.patchLength = patchLength;
     options.formFactors.transport.resolution = resolution;
     options.solver.tolerance = 1e-8;
+    if (bounces > 0) options.solver.method = SolverMethod::Jacobi;
     options.solver.bounces = bounces;
     options.formFactors.transport.randomRotation = false;
     Progress progress;
