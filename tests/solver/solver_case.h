@@ -5,6 +5,9 @@
 #include "formfactors/form_factor_method.h"
 #include "solver/form_factor_rows.h"
 #include "solver/problem.h"
+#include "solver/solver.h"
+
+#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -152,6 +155,17 @@ public:
 private:
     const FormFactorMatrix& matrix_;
 };
+
+/// Every solver that takes form factors, and its name as part of a test's.
+inline auto deterministicSolvers() {
+    return testing::Values(SolverMethod::Jacobi, SolverMethod::GaussSeidel, SolverMethod::Southwell,
+                           SolverMethod::ConjugateGradient);
+}
+inline std::string solverTestName(const testing::TestParamInfo<SolverMethod>& tested) {
+    std::string name(nameOf(tested.param));
+    std::erase(name, '-');
+    return name;
+}
 
 /// Back to one thread per processor at the end.
 struct ThreadCountGuard {

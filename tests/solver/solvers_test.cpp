@@ -28,14 +28,7 @@ protected:
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Solvers,
-                         testing::Values(SolverMethod::Jacobi, SolverMethod::GaussSeidel, SolverMethod::Southwell,
-                                         SolverMethod::ConjugateGradient),
-                         [](const auto& tested) {
-                             std::string name(nameOf(tested.param));
-                             std::erase(name, '-');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Solvers, deterministicSolvers(), solverTestName);
 
 TEST_P(Solvers, SolveTheSixPatchesOfTheCubeExactly) {
     const ReferenceCase cube("cube6", "B_6patch_exact");
