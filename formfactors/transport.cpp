@@ -191,10 +191,11 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
         if (last)
             throw SystemError(fmt::format(
                 "the form factors of {} patches would take about {:.2g} GiB ({}), --memory-limit allows {:.2g}; allow "
-                "more, or take fewer patches{} or --storage compact",
+                "more, or take fewer patches{} or --storage compact{}",
                 mesh.size(), plan.bytes / 1073741824.0, plan.effort(),
                 static_cast<double>(options.memoryLimit) / 1073741824.0,
-                hasLines(options.method) ? ", fewer --lines" : ", a lower --resolution"));
+                hasLines(options.method) ? ", fewer --lines" : ", a lower --resolution",
+                hasRows(options.method) ? "; `bake` also does without them (--solver southwell --storage none)" : ""));
     }
     throw UsageError("no effort to choose from"); // not reached: the last one returns or throws
 }

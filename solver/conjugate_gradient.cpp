@@ -134,38 +134,36 @@ private:
 
 RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFactorRows& rows,
                                          const ConjugateGradientOptions& options, Progress& progress) {
-    constexpr double kEnough = 0.5; // less is gained by another start only where rounding is all that is left
+    constexpr double kEnough = 0.5; // a start that gains less has reached what rounding allows
     const Stopwatch watch;
     const std::size_t count = problem.size();
     SymmetrisedSystem system(problem, rows);
     RadiositySolution solution;
-    solution.radiosity = problem.emitted();
+    const auto record = [&](double residual) {
+        solution.residual = residual;
+        solution.history.push_back({++solution.iterations, residual, watch.seconds()});
+        progress.advance();
+    };
+    const auto unfinished = [&] {
+        return solution.residual > options.tolerance && solution.iterations < options.maxIterations;
+    };
     Vector z(count, RgbSum(0.0));
+    solution.radiosity = problem.emitted();
     progress.begin("solve", 0);
-    const auto record = [&] { solution.history.push_back({solution.iterations, solution.residual, watch.seconds()}); };
-    solution.residual = gatherResidual(problem, rows, solution, progress);
-    ++solution.iterations;
-    record();
-    for (double before = 2.0 * solution.residual / kEnough; solution.residual > options.tolerance &&
-                                                            solution.residual <= kEnough * before &&
-                                                            solution.iterations < options.maxIterations;) {
-        before = solution.residual;
+    record(gatherResidual(problem, rows, solution, progress));
+    for (bool gains = true; gains && unfinished();) {
+        const double before = solution.residual;
         Vector residual(count);
         for (std::size_t i = 0; i < count; ++i) residual[i] = system.scale(i) * solution.irradiance[i] - z[i];
         Orthomin method(system, std::move(residual));
         do {
             method.step(z, progress);
-            solution.residual = system.relativeNorm(method.residual());
-            ++solution.iterations;
-            record();
-            progress.advance();
-        } while (solution.residual > options.tolerance && solution.iterations < options.maxIterations &&
-                 method.falls());
+            record(system.relativeNorm(method.residual()));
+        } while (unfinished() && method.falls());
         // The residual that was updated from step to step is not believed at the end.
         for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
-        solution.residual = gatherResidual(problem, rows, solution, progress);
-        ++solution.iterations;
-        record();
+        record(gatherResidual(problem, rows, solution, progress));
+        gains = solution.residual <= kEnough * before;
     }
     progress.end();
     // One more bounce, which was gathered for the residual.
