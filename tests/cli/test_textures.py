@@ -15,11 +15,12 @@ LEAF_TWO_SIDED = '{"materials": {"leaf": {"two_sided": true}}}'   # which OBJ ca
 
 class TexturedRoom(ProgramTest):
     def test_energy_balances_and_the_leaf_has_the_area_of_its_image(self):
-        report = self.bake(ROOM, "-o", self.folder / "room.glb")
+        # Raw hemicube rows lose 1.7e-3, which a loose tolerance hides or not; repaired ones are closed to 1e-6.
+        report = self.bake(ROOM, "-o", self.folder / "room.glb", "--patches", "2000", "--resolution", "64", "--repair",
+                           "--tolerance", "1e-6")
         texels = sum(generate.in_leaf((x + .5) / 64, (y + .5) / 64) for x in range(64) for y in range(64))
         self.assert_close(materials(report)["leaf"]["area"], texels / 64 ** 2, 1e-5)  # of 1 m², summed in floats
-        # Found 6e-4. Most of it is the lamp's: with 96 pixels in place of 128 it is 8e-4 +- 9e-4 over five seeds.
-        self.assertLess(abs(report["energy"]["imbalance"]), 1e-3)
+        self.assertLess(abs(report["energy"]["imbalance"]), 1e-5)
 
     def test_twins_have_the_same_light(self):
         # The same patches and rays; glTF has triangles, whose pairs become quads again, and single precision.
