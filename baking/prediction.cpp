@@ -19,6 +19,7 @@ constexpr double kPilotSeconds = 0.4;
 // Measured on two cores; all but the rows is a small part of a bake.
 constexpr double kSecondsPerEntry = 3e-9; // of one iteration, one thread
 constexpr double kSecondsPerPatch = 5e-6; // of reconstruction
+constexpr double kSecondsPerRay = 2e-7;   // of pictures, one thread, where the rows need none
 constexpr double kBytesPerPatch = 1000.0; // solution, reconstruction and the files' bytes
 constexpr double kBytesPerRow = 32.0;     // the allocator's, and what rounding up costs
 
@@ -107,7 +108,8 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     const double secondsPerRow = pilot.seconds / static_cast<double>(pilot.rows);
     const double entries = patches * pilot.entries;
     result.rays = result.plan.rays;
-    result.secondsPerRay = secondsPerRow / static_cast<double>(method->raysPerRow());
+    const auto raysPerRow = static_cast<double>(method->raysPerRow());
+    result.secondsPerRay = raysPerRow > 0.0 ? secondsPerRow / raysPerRow : kSecondsPerRay / threadCount();
     result.seconds.formFactors = secondsPerRow * patches;
     result.seconds.solve = predictPasses(pilot.reflected, options.solver) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;

@@ -46,13 +46,16 @@ FormFactorMatrix computeMatrix(const FormFactorMethod& method, MatrixStorage sto
         RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
         FormFactorRow row;
         for (std::size_t patch = begin; patch < end; ++patch) {
-            if (done[patch]) continue;
+            if (done[patch]) {
+                progress.advance();
+                continue;
+            }
             method.row(static_cast<std::uint32_t>(patch), accumulator);
             accumulator.take(row);
             matrix.setRow(patch, row);
             if (journal) journal->add(matrix, patch);
+            progress.advance(); // a row of closed forms may take seconds: none more once cancelled
         }
-        progress.advance(end - begin);
     };
     try {
         parallelFor(method.patchCount(), 8, compute);

@@ -34,6 +34,19 @@ TEST(Prediction, MatrixHasAboutThePredictedSize) {
     EXPECT_GT(predicted.peakMemory, predicted.matrixBytes);
 }
 
+TEST(Prediction, RowsWithoutRaysTakeTimeToo) {
+    Progress progress;
+    BakeOptions options = smallOptions();
+    options.mesh.patches = 50;
+    options.formFactors.transport.resolution.reset();
+    options.formFactors.transport.method = TransportMethod::ClosedForm;
+    const BakePrediction predicted = predictBake(roomWithBoxScene(), options, progress);
+    EXPECT_EQ(predicted.rays, 0U);
+    EXPECT_GT(predicted.seconds.formFactors, 0.0);
+    EXPECT_GT(predicted.secondsPerRay, 0.0);
+    EXPECT_LT(predicted.secondsPerRay, 1e-3);
+}
+
 TEST(Prediction, SceneWithoutLightIsRefused) {
     Progress progress;
     const Material wall = greyMaterial("wall", 0.5F);
