@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace lambert {
 
@@ -23,70 +22,17 @@ constexpr std::uint64_t kSpansPerBatch = std::uint64_t{1} << 26;
 struct GlobalLines::Scratch {
     explicit Scratch(std::size_t patches) : log(patches) {}
     IsotropicLines::Block block;
-    LineCrossings crossings;
+    LineSpans::Scratch spans;
     SpanLog log;
-    /// The k-th crossings of the packet's lines, for the lookup.
-    struct Hits {
-        alignas(64) std::uint32_t polygon[16], patch[16];
-        alignas(64) float u[16], v[16];
-    };
-    std::vector<Hits> hits;
 };
 
 GlobalLines::GlobalLines(const PatchMesh& mesh, const LineCaster& caster, const GlobalLineOptions& options)
-    : mesh_(mesh), caster_(caster), options_(options), lines_(caster.bounds(), options) {
-    const Scene& scene = caster.scene();
-    for (const Polygon& polygon : scene.polygons) occluder_.push_back(isOccluder(scene, polygon));
-    if (std::find(occluder_.begin(), occluder_.end(), true) == occluder_.end()) occluder_.clear();
-}
-
-/// The k-th crossings of all lines together: neighbouring lines mostly cross the same polygon, for which the lookup is fastest.
-void GlobalLines::findPatches(Scratch& scratch) const {
-    for (std::size_t k = 0;; ++k) {
-        std::array<int, LinePacket::kSize> lanes{}; // that have a k-th crossing
-        std::size_t count = 0;
-        for (int lane = 0; lane < LinePacket::kSize; ++lane) {
-            lanes[count] = lane;
-            count += scratch.crossings[lane].size() > k ? 1 : 0;
-        }
-        if (count == 0) return;
-        if (scratch.hits.size() == k) scratch.hits.emplace_back();
-        Scratch::Hits& hits = scratch.hits[k];
-        // Where few are missing, others stand for them, so that the polygons may still be all the same.
-        const Crossing& other = scratch.crossings[lanes[0]][k];
-        std::fill_n(hits.polygon, 16, count >= 8 ? other.polygon : kNone);
-        std::fill_n(hits.u, 16, other.u);
-        std::fill_n(hits.v, 16, other.v);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Crossing& crossing = scratch.crossings[lanes[i]][k];
-            hits.polygon[lanes[i]] = crossing.polygon;
-            hits.u[lanes[i]] = crossing.u;
-            hits.v[lanes[i]] = crossing.v;
-        }
-        mesh_.lookup.patchesAt(hits.polygon, hits.u, hits.v, hits.patch);
-    }
-}
+    : mesh_(mesh), options_(options), lines_(caster.bounds(), options), spans_(mesh, caster) {}
 
 void GlobalLines::traceBlock(std::uint64_t block, Scratch& scratch) const {
     lines_.fill(block, scratch.block);
-    SpanLog& log = scratch.log;
-    for (const LinePacket& packet : scratch.block.packets) {
-        caster_.cross(packet, scratch.crossings);
-        findPatches(scratch);
-        for (int line = 0; line < LinePacket::kSize; ++line) {
-            std::uint32_t left = log.out(); // what the line left last
-            const std::span<const Crossing> crossings = scratch.crossings[line];
-            for (std::size_t k = 0; k < crossings.size(); ++k) {
-                const Crossing& crossing = crossings[k];
-                std::uint32_t front = scratch.hits[k].patch[line];
-                std::uint32_t back = std::min(mesh_.lookup.backPatch(crossing.polygon, front), log.back());
-                if (!occluder_.empty() && occluder_[crossing.polygon]) front = back = log.back();
-                log.add(left, crossing.front ? front : back);
-                left = crossing.front ? back : front;
-            }
-            log.add(left, log.out());
-        }
-    }
+    for (const LinePacket& packet : scratch.block.packets)
+        spans_.visit(packet, scratch.spans, [&](std::uint32_t a, std::uint32_t b) { scratch.log.add(a, b); });
 }
 
 void GlobalLines::trace(GlobalLineCounts& counts, Progress& progress,

@@ -2,6 +2,7 @@
 
 #include "formfactors/global_line_counts.h"
 #include "formfactors/isotropic_lines.h"
+#include "formfactors/line_spans.h"
 #include "meshing/patch_mesh.h"
 #include "scene/line_caster.h"
 
@@ -33,14 +34,12 @@ public:
 
 private:
     struct Scratch;
-    void findPatches(Scratch& scratch) const;
     void traceBlock(std::uint64_t block, Scratch& scratch) const;
 
     const PatchMesh& mesh_;
-    const LineCaster& caster_;
     GlobalLineOptions options_;
     IsotropicLines lines_;
-    std::vector<bool> occluder_; ///< by polygon; empty: none
+    LineSpans spans_;
 };
 
 } // namespace lambert
