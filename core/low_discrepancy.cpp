@@ -65,14 +65,6 @@ std::array<Matrix, kSobolDimensions> sobolMatrices() {
     return matrices;
 }
 
-std::uint32_t reversedBits(std::uint32_t x) {
-    x = (x >> 16) | (x << 16);
-    x = ((x & 0xFF00FF00U) >> 8) | ((x & 0x00FF00FFU) << 8);
-    x = ((x & 0xF0F0F0F0U) >> 4) | ((x & 0x0F0F0F0FU) << 4);
-    x = ((x & 0xCCCCCCCCU) >> 2) | ((x & 0x33333333U) << 2);
-    return ((x & 0xAAAAAAAAU) >> 1) | ((x & 0x55555555U) << 1);
-}
-
 /// All bits of the result depend on all bits of `x`: the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {
     x += 0x9E3779B97F4A7C15U;
@@ -141,15 +133,19 @@ std::uint32_t sobol(std::uint32_t index, std::uint32_t dimension) {
     return bits;
 }
 
-std::uint32_t owenScrambled(std::uint32_t bits, std::uint32_t seed) {
-    // Laine, Karras 2011: a hash in which a bit is changed only by lower ones; constants: Burley 2020's successors.
-    std::uint32_t x = reversedBits(bits);
-    x ^= x * 0x3D20ADEAU;
-    x += seed;
-    x *= (seed >> 16) | 1U;
-    x ^= x * 0x05526C56U;
-    x ^= x * 0x53A22864U;
-    return reversedBits(x);
+std::array<std::uint32_t, 4> sobol4(std::uint32_t index) {
+    using Point = std::array<std::uint32_t, 4>;
+    static const auto byBytes = [] { // the sequence is linear in the index's bits
+        std::array<std::array<Point, 256>, 4> table{};
+        for (std::uint32_t place = 0; place < 4; ++place)
+            for (std::uint32_t byte = 0; byte < 256; ++byte)
+                for (std::uint32_t d = 0; d < 4; ++d) table[place][byte][d] = sobol(byte << (8 * place), d);
+        return table;
+    }();
+    Point point = byBytes[0][index & 0xFF];
+    for (std::size_t place = 1; (index >>= 8) != 0; ++place)
+        for (std::size_t d = 0; d < 4; ++d) point[d] ^= byBytes[place][index & 0xFF][d];
+    return point;
 }
 
 namespace {

@@ -24,20 +24,21 @@ bool allFront(const RayPacket& packet) {
 
 } // namespace
 
-void HitSum::findTargets(const RayPacket& packet, Targets& target) const {
-    for (std::uint32_t& t : target) t = accumulator_.out();
-    lookup_.patchesAt(packet.polygon, packet.u, packet.v, target);
+void findTargets(const PatchLookup& lookup, const RayPacket& packet, std::uint32_t back, std::uint32_t out,
+                 std::uint32_t (&target)[RayPacket::kSize]) {
+    for (std::uint32_t& t : target) t = out;
+    lookup.patchesAt(packet.polygon, packet.u, packet.v, target);
     if (allFront(packet)) return;
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
-        const std::uint32_t back = lookup_.backPatch(packet.polygon[lane], target[lane]);
-        target[lane] = back == kNone ? accumulator_.back() : back;
+        const std::uint32_t second = lookup.backPatch(packet.polygon[lane], target[lane]);
+        target[lane] = second == kNone ? back : second;
     }
 }
 
 void HitSum::add(const RayPacket& packet, const float (&weight)[RayPacket::kSize], double weightSum) {
     alignas(64) Targets target;
-    findTargets(packet, target);
+    findTargets(lookup_, packet, accumulator_.back(), accumulator_.out(), target);
     if (allEqual(target)) {
         start(target[0]);
         sum_ += weightSum;
@@ -51,7 +52,7 @@ void HitSum::add(const RayPacket& packet, const float (&weight)[RayPacket::kSize
 
 void HitSum::add(const RayPacket& packet, int count, double weight) {
     alignas(64) Targets target;
-    findTargets(packet, target);
+    findTargets(lookup_, packet, accumulator_.back(), accumulator_.out(), target);
     for (int lane = 0; lane < count; ++lane) {
         start(target[lane]);
         sum_ += weight;

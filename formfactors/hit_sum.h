@@ -6,6 +6,11 @@
 
 namespace lambert {
 
+/// What each ray of a packet ends on: the patch whose front it meets, or `back` for a black back and `out` for nothing. Without
+/// meaning for inactive rays.
+void findTargets(const PatchLookup& lookup, const RayPacket& packet, std::uint32_t back, std::uint32_t out,
+                 std::uint32_t (&target)[RayPacket::kSize]);
+
 /// Adds what rays carry to the patches that they hit: to the front that is met, to the second side where a two-sided polygon
 /// is met from behind, to the row's remainders for black backs and for rays that leave the scene. Runs of neighbouring rays
 /// that meet the same patch are added up first.
@@ -25,7 +30,6 @@ public:
 private:
     using Targets = std::uint32_t[RayPacket::kSize];
 
-    void findTargets(const RayPacket& packet, Targets& target) const;
     void start(std::uint32_t target) {
         if (target == target_) return;
         accumulator_.add(target_, sum_);

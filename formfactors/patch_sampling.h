@@ -25,6 +25,11 @@ public:
         return point;
     }
 
+    /// The corners, for who maps in single precision; a triangle repeats its last one.
+    const std::array<glm::vec3, 4>& corners() const { return corners_; }
+    /// Area of the first of the triangles (0, 1, 2) and (0, 2, 3), as a share of both.
+    float firstShare() const { return static_cast<float>(area012_ / (area012_ + area023_)); }
+
     /// Points, plus `offset`, for `count` points of the unit square, all first coordinates before the second ones. The same in single
     /// precision, and vectorised where the file is compiled with -fno-math-errno.
     void fill(const float* u, std::size_t count, const glm::vec3& offset, float* x, float* y, float* z) const {
@@ -32,7 +37,7 @@ public:
         const glm::vec3 b = corners_[1] - corners_[0];
         const glm::vec3 c = corners_[2] - corners_[0];
         const glm::vec3 d = corners_[3] - corners_[0];
-        const auto share = static_cast<float>(area012_ / (area012_ + area023_));
+        const float share = firstShare();
         const float inverse = share > 0.0F ? 1.0F / share : 0.0F;
         const float inverseRest = share < 1.0F ? 1.0F / (1.0F - share) : 0.0F;
 #pragma GCC ivdep

@@ -77,10 +77,11 @@ struct RayCaster::Impl {
     EmbreeScene embree;
 
     /// `rays` hold the origins, `packet` the directions.
-    void trace(RTCRayHit16& rays, RayPacket& packet) const {
+    void trace(RTCRayHit16& rays, RayPacket& packet, Coherence coherence) const {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        context.flags =
+            coherence == Coherence::High ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         loadDirections(packet, rays);
         rtcIntersect16(packet.active, embree.handle(), &context, &rays);
         store(rays, packet);
@@ -129,10 +130,10 @@ void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     std::fill_n(rays.ray.org_x, RayPacket::kSize, scaled.x);
     std::fill_n(rays.ray.org_y, RayPacket::kSize, scaled.y);
     std::fill_n(rays.ray.org_z, RayPacket::kSize, scaled.z);
-    impl_->trace(rays, packet);
+    impl_->trace(rays, packet, Coherence::High);
 }
 
-void RayCaster::closest(const RayOrigins& origins, RayPacket& packet) const {
+void RayCaster::closest(const RayOrigins& origins, RayPacket& packet, Coherence coherence) const {
     alignas(64) RTCRayHit16 rays;
     const float scale = impl_->embree.scale();
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
@@ -140,7 +141,7 @@ void RayCaster::closest(const RayOrigins& origins, RayPacket& packet) const {
         rays.ray.org_y[lane] = scale * origins.y[lane];
         rays.ray.org_z[lane] = scale * origins.z[lane];
     }
-    impl_->trace(rays, packet);
+    impl_->trace(rays, packet, coherence);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {

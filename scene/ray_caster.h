@@ -32,6 +32,12 @@ struct alignas(64) RayPacket {
     float facing[kSize];          //!< out: direction · geometric normal; negative on the front
 };
 
+/// How near to each other the rays of a packet are; decides how they are traced, not what they hit.
+enum class Coherence {
+    High, ///< most of them meet the same polygons
+    Low   ///< they begin near each other and have about the same direction
+};
+
 /// Origins of a packet's rays, if they do not share one.
 struct alignas(64) RayOrigins {
     float x[RayPacket::kSize], y[RayPacket::kSize], z[RayPacket::kSize];
@@ -55,7 +61,7 @@ public:
     /// First hits of 16 rays from `origin`, fastest if their directions are close to each other.
     void closest(const glm::vec3& origin, RayPacket& packet) const;
     /// The same for rays with origins of their own.
-    void closest(const RayOrigins& origins, RayPacket& packet) const;
+    void closest(const RayOrigins& origins, RayPacket& packet, Coherence coherence = Coherence::High) const;
     /// Whether anything lies on the ray before its maxDistance.
     bool occluded(const Ray& ray) const;
 

@@ -42,6 +42,11 @@ TEST(Hammersley, CountsAlongItsFirstAxis) {
     EXPECT_EQ(hammersley(3, 8, 1), 0.75);
 }
 
+TEST(Sobol, FourDimensionsAtOnceAreTheSame) {
+    for (const std::uint32_t index : {0U, 1U, 2U, 255U, 256U, 0x12345678U, 0xFFFF0000U, 0xFFFFFFFFU})
+        for (std::uint32_t d = 0; d < 4; ++d) EXPECT_EQ(sobol4(index)[d], sobol(index, d)) << index;
+}
+
 // Boost's generator leaves the origin out and walks in Gray-code order: its k-th point is the point gray(k).
 TEST(Sobol, AgreesWithBoost) {
     boost::random::sobol_engine<std::uint32_t, 32> engine(kSobolDimensions);
