@@ -1,0 +1,187 @@
+#include "solver/patch_rays.h"
+
+#include "core/error.h"
+#include "core/low_discrepancy.h"
+#include "core/orthonormal_basis.h"
+#include "core/random.h"
+#include "core/vector_clones.h"
+#include "core/vector_warps.h"
+#include "formfactors/hit_sum.h"
+#include "formfactors/patch_sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace lambert {
+
+namespace {
+
+constexpr std::size_t kSmallScene = 100; ///< polygons; packets meet most of them, whatever their directions
+constexpr std::uint32_t kPatchStream = 0x50415443;
+
+/// Scrambles Sobol points, `keys` being seeds, and turns them into floats.
+LAMBERT_VECTOR_CLONES
+void scramble(const std::uint32_t* bits, const std::uint32_t* keys, std::size_t count, float* unit) {
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) unit[i] = uniformFloat(owenScrambled(bits[i], keys[i]));
+}
+
+/// From the unit square to cosine-distributed directions about z.
+LAMBERT_VECTOR_CLONES
+void localDirections(const float* unit, std::size_t count, float* local) {
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) {
+        const DiskPoint p(unit[i], unit[i + count]);
+        const float squared = 1.0F - p.squaredRadius;
+        local[i] = p.x;
+        local[i + count] = p.y;
+        local[i + 2 * count] = std::sqrt(squared > 0.0F ? squared : 0.0F);
+    }
+}
+
+/// Directions to the unit square: the octahedron, unfolded. Neighbours stay neighbours but at the seams.
+/// Z. H. Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.
+LAMBERT_VECTOR_CLONES
+void unfold(const float* direction, std::size_t count, float* cell) {
+    constexpr float kBelowOne = 0.9999999F;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = direction[i];
+        const float y = direction[i + count];
+        const float z = direction[i + 2 * count];
+        const float inverse = 1.0F / (std::abs(x) + std::abs(y) + std::abs(z));
+        const float px = x * inverse;
+        const float py = y * inverse;
+        const float qx = z >= 0.0F ? px : std::copysign(1.0F - std::abs(py), px);
+        const float qy = z >= 0.0F ? py : std::copysign(1.0F - std::abs(px), py);
+        const float u = 0.5F + 0.5F * qx;
+        const float v = 0.5F + 0.5F * qy;
+        cell[i] = u < kBelowOne ? (u > 0.0F ? u : 0.0F) : kBelowOne;
+        cell[i + count] = v < kBelowOne ? (v > 0.0F ? v : 0.0F) : kBelowOne;
+    }
+}
+
+/// Few cells: rays of a packet should also start near each other. (On a staircase of a million patches 3 bits beat 2 and 4.)
+int directionBits(std::size_t count) { return count >= 512 ? 3 : 2; }
+
+} // namespace
+
+PatchRays::PatchRays(const PatchMesh& mesh, const RayCaster& rays, Sampler sampler)
+    : mesh_(mesh),
+      rays_(rays),
+      sampler_(sampler),
+      coherence_(rays.scene().polygons.size() < kSmallScene ? Coherence::High : Coherence::Low) {
+    if (sampler != Sampler::Random && sampler != Sampler::Sobol)
+        throw UsageError("the sampler of stochastic solvers: allowed are random and sobol");
+}
+
+/// Makes origins and directions of all rays, and returns how many.
+std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
+    const std::size_t count = std::accumulate(batch.runs.begin(), batch.runs.end(), std::size_t{0},
+                                              [](std::size_t sum, const RayRun& run) { return sum + run.count; });
+    batch.bits.resize(4 * count);
+    batch.keys.resize(4 * count);
+    batch.unit.resize(4 * count);
+    batch.runOf.resize(count);
+    std::size_t ray = 0;
+    for (std::uint32_t r = 0; r < batch.runs.size(); ++r) {
+        const RayRun& run = batch.runs[r];
+        const auto key = philox({run.patch, 0, 0, kPatchStream}, seed);
+        const std::uint64_t own = (std::uint64_t{key[0]} << 32) | key[1];
+        for (std::uint32_t k = 0; k < run.count; ++k, ++ray) {
+            const std::uint32_t index = run.first + k;
+            const auto point = sampler_ == Sampler::Sobol ? sobol4(index) : philox({index, 0, 0, kPatchStream}, own);
+            batch.runOf[ray] = r;
+            for (std::size_t d = 0; d < 4; ++d) {
+                batch.bits[ray + d * count] = point[d];
+                batch.keys[ray + d * count] = key[d];
+            }
+        }
+    }
+    if (sampler_ == Sampler::Sobol)
+        scramble(batch.bits.data(), batch.keys.data(), 4 * count, batch.unit.data());
+    else
+        std::transform(batch.bits.begin(), batch.bits.end(), batch.unit.begin(), uniformFloat);
+
+    batch.direction.resize(3 * count);
+    batch.origin.resize(3 * count);
+    localDirections(batch.unit.data(), count, batch.direction.data());
+    const float* u = batch.unit.data() + 2 * count;
+    ray = 0;
+    for (const RayRun& run : batch.runs) {
+        const OrthonormalBasis frame(mesh_.normal[run.patch]);
+        const PatchPoints points(mesh_, run.patch);
+        const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[run.patch])) * frame.z;
+        const auto& corners = points.corners();
+        const glm::vec3 a = corners[0] + offset;
+        const std::array edges{corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]};
+        const float share = points.firstShare();
+        const float inverse = share > 0.0F ? 1.0F / share : 0.0F;
+        const float inverseRest = share < 1.0F ? 1.0F / (1.0F - share) : 0.0F;
+        for (std::uint32_t k = 0; k < run.count; ++k, ++ray) {
+            const float lx = batch.direction[ray];
+            const float ly = batch.direction[ray + count];
+            const float lz = batch.direction[ray + 2 * count];
+            batch.direction[ray] = lx * frame.x.x + ly * frame.y.x + lz * frame.z.x;
+            batch.direction[ray + count] = lx * frame.x.y + ly * frame.y.y + lz * frame.z.y;
+            batch.direction[ray + 2 * count] = lx * frame.x.z + ly * frame.y.z + lz * frame.z.z;
+            const std::size_t half = u[ray] < share ? 0 : 1; // as uniformQuad
+            const float rescaled = half == 0 ? u[ray] * inverse : (u[ray] - share) * inverseRest;
+            const float root = std::sqrt(std::min(rescaled, 1.0F));
+            const float v = root * (1.0F - u[ray + count]);
+            const float w = root * u[ray + count];
+            const glm::vec3& b = edges[half];
+            const glm::vec3& c = edges[half + 1];
+            batch.origin[ray] = a.x + v * b.x + w * c.x;
+            batch.origin[ray + count] = a.y + v * b.y + w * c.y;
+            batch.origin[ray + 2 * count] = a.z + v * b.z + w * c.z;
+        }
+    }
+    return count;
+}
+
+void PatchRays::trace(std::uint64_t seed, Batch& batch) const {
+    const std::size_t count = make(seed, batch);
+    batch.cell.resize(2 * count);
+    unfold(batch.direction.data(), count, batch.cell.data());
+    batch.all.resize(count);
+    std::iota(batch.all.begin(), batch.all.end(), 0U);
+    const auto order = batch.sorter.order(batch.cell, count, 2, directionBits(count), batch.all);
+    batch.run.resize(count);
+    batch.target.resize(count);
+    RayPacket packet;
+    RayOrigins origins;
+    alignas(64) std::uint32_t target[RayPacket::kSize];
+    for (std::size_t first = 0; first < count; first += RayPacket::kSize) {
+        const std::size_t lanes = std::min<std::size_t>(RayPacket::kSize, count - first);
+        for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
+            const std::size_t i = order[first + std::min(lane, lanes - 1)]; // past the end the last one again, inactive
+            origins.x[lane] = batch.origin[i];
+            origins.y[lane] = batch.origin[i + count];
+            origins.z[lane] = batch.origin[i + 2 * count];
+            packet.directionX[lane] = batch.direction[i];
+            packet.directionY[lane] = batch.direction[i + count];
+            packet.directionZ[lane] = batch.direction[i + 2 * count];
+            packet.active[lane] = lane < lanes ? -1 : 0;
+        }
+        rays_.closest(origins, packet, coherence_);
+        findTargets(mesh_.lookup, packet, back(), out(), target);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            batch.run[first + lane] = batch.runOf[order[first + lane]];
+            batch.target[first + lane] = target[lane];
+        }
+    }
+}
+
+std::vector<Ray> PatchRays::rays(std::uint64_t seed, Batch& batch) const {
+    const std::size_t count = make(seed, batch);
+    std::vector<Ray> result;
+    for (std::size_t i = 0; i < count; ++i)
+        result.push_back({{batch.origin[i], batch.origin[i + count], batch.origin[i + 2 * count]},
+                          {batch.direction[i], batch.direction[i + count], batch.direction[i + 2 * count]}});
+    return result;
+}
+
+} // namespace lambert

@@ -1,0 +1,197 @@
+#include "solver/relaxation_run.h"
+
+#include "solver/ordered_sum.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lambert {
+
+namespace {
+
+constexpr int kMostBounces = 10'000;
+constexpr std::size_t kMedianSample = 4096;       ///< patches, about
+constexpr double kLeastShare = 0.1;               ///< of either kind of lines, where both are used
+constexpr double kLinesPerIteration = 2 * 4096.0; ///< global lines at least, or there are fewer iterations
+
+double sum(const RgbSum& colour) { return colour.x + colour.y + colour.z; }
+double sumOfMagnitudes(const Rgb& colour) { return sum(RgbSum(glm::abs(colour))); }
+
+} // namespace
+
+RelaxationRun::RelaxationRun(const SolverProblem& problem, const RayCaster& rays,
+                             const StochasticRelaxationOptions& options)
+    : problem_(problem),
+      mesh_(problem.mesh()),
+      options_(options),
+      local_(mesh_, rays, options.sampler),
+      received_(problem.size()),
+      counts_(problem.size()),
+      sender_(problem.size()),
+      light_(problem.size(), Rgb(0.0F)) {
+    if (options.lines == RelaxationLines::Global) {
+        lineCaster_ = std::make_unique<LineCaster>(rays.scene());
+        global_ = std::make_unique<GlobalExchange>(mesh_, *lineCaster_, options.lineSet, options.sampler);
+    }
+    area_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return area(i); });
+    rootArea_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return std::sqrt(area(i)); });
+    sourcePower_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(source(i))); });
+}
+
+void RelaxationRun::run(std::uint64_t rays, std::uint64_t seed, Progress& progress) {
+    input_ = {};
+    input_.seed = seed;
+    input_.senders = sender_;
+    losses_ = {};
+    rays_ = 0;
+    local_.restart();
+    if (global_) global_->restart(seed);
+    shoot(options_.shootingShare * static_cast<double>(rays), progress);
+    if (options_.shootingShare == 1.0) return;
+    const double rest = std::max(1.0, static_cast<double>(rays) - static_cast<double>(rays_));
+    int iterations = options_.regularIterations;
+    if (global_) iterations = std::clamp(static_cast<int>(rest / kLinesPerIteration), 1, iterations);
+    for (int k = 0; k < iterations; ++k)
+        global_ ? gatherGlobally(rest / iterations, progress) : gatherLocally(rest / iterations, progress);
+}
+
+std::uint64_t RelaxationRun::exchangeLocally(Losses& losses, Progress& progress) {
+    const std::uint64_t rays = local_.exchange(input_, received_, losses, counts_, progress);
+    ++input_.iteration;
+    return rays;
+}
+
+void RelaxationRun::shoot(double rays, Progress& progress) {
+    forPatches(mesh_.size(), [&](std::size_t i) {
+        sender_[i].excess = source(i);
+        light_[i] = direct(i);
+    });
+    input_.control = Rgb(0.0F);
+    double power = sourcePower_;
+    // As many rays for the first bounce as will make about `rays` in all.
+    const double perPower = rays / sourcePower_ * (1.0 - meanReflectance());
+    for (int k = 0; k < kMostBounces && power > options_.unshot * sourcePower_; ++k) {
+        const double lines = perPower * power; // the mean of the whole number that is drawn
+        forPatches(mesh_.size(), [&](std::size_t i) {
+            sender_[i].density = static_cast<float>(lines * sum(RgbSum(sender_[i].excess)) / power);
+        });
+        rays_ += exchangeLocally(losses_, progress);
+        power = orderedSum(mesh_.size(), 0.0, [&](std::size_t i) {
+            const Rgb received(received_.take(i) / area(i));
+            light_[i] += received;
+            sender_[i].excess = mesh_.reflectance[i] * received;
+            return area(i) * sum(RgbSum(sender_[i].excess));
+        });
+    }
+    unshot_ = power / sourcePower_;
+}
+
+/// Σ A ρ / Σ A, of the largest channel.
+double RelaxationRun::meanReflectance() const {
+    return orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * largest(mesh_.reflectance[i]); }) /
+           area_;
+}
+
+/// Rays by power, a share of them evenly over the patches. The error Σ A_i var(E_i) of gathering Σ A_i n_i rays is least if n_i goes
+/// with 1/√A_i.
+template <typename Magnitude>
+void RelaxationRun::setDensities(double rays, double spread, Magnitude&& magnitude) {
+    const double power = orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * magnitude(i); });
+    if (!(power > 0.0)) spread = 1.0;
+    const double perPower = power > 0.0 ? (1.0 - spread) * rays / power : 0.0;
+    const double perRoot = spread * rays / rootArea_;
+    forPatches(mesh_.size(), [&](std::size_t i) {
+        sender_[i].density = static_cast<float>(perPower * magnitude(i) + perRoot / std::sqrt(area(i)));
+    });
+}
+
+void RelaxationRun::includeInMean(double rays, const Losses& losses) {
+    const double share = rays / static_cast<double>(rays_);
+    losses_.backFaces += share * (losses.backFaces - losses_.backFaces);
+    losses_.escaped += share * (losses.escaped - losses_.escaped);
+}
+
+/// E = E_0 + F B by local lines.
+void RelaxationRun::gatherLocally(double rays, Progress& progress) {
+    input_.control = options_.controlVariate ? median([&](std::size_t i) { return radiosity(i); }) : Rgb(0.0F);
+    forPatches(mesh_.size(), [&](std::size_t i) { sender_[i].excess = radiosity(i) - input_.control; });
+    setDensities(rays, options_.gatheringShare, [&](std::size_t i) { return sumOfMagnitudes(sender_[i].excess); });
+    Losses losses;
+    const std::uint64_t count = exchangeLocally(losses, progress);
+    rays_ += count;
+    includeInMean(static_cast<double>(count), losses);
+    const auto share = static_cast<float>(static_cast<double>(count) / static_cast<double>(rays_));
+    forPatches(mesh_.size(), [&](std::size_t i) {
+        const Rgb found = direct(i) + input_.control + Rgb(received_.take(i) / area(i));
+        light_[i] += share * (found - light_[i]);
+    });
+}
+
+/// E = E_0 + F B_e + F ρ E: what lamps send by local lines, as global ones hardly meet small lamps; the rest by global lines.
+void RelaxationRun::gatherGlobally(double lines, Progress& progress) {
+    const auto emission = [&](std::size_t i) { return mesh_.emittedRadiosity[i]; };
+    const double emitted =
+        orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(emission(i))); });
+    const double all =
+        orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(radiosity(i))); });
+    const double localShare = emitted > 0.0 ? std::clamp(emitted / all, kLeastShare, 1.0 - kLeastShare) : 0.0;
+
+    const Rgb control = options_.controlVariate ? median([&](std::size_t i) { return reflected(i); }) : Rgb(0.0F);
+    Losses losses;
+    std::uint64_t count = 0;
+    if (emitted > 0.0) {
+        input_.control = Rgb(0.0F);
+        forPatches(mesh_.size(), [&](std::size_t i) { sender_[i].excess = emission(i); });
+        setDensities(localShare * lines, 0.0, [&](std::size_t i) { return sumOfMagnitudes(sender_[i].excess); });
+        count = exchangeLocally(losses, progress);
+    }
+    // What the mean is to hold of this iteration in the end, of which the lamps' part can be added now.
+    const double blockLines = global_->linesFor((1.0 - localShare) * lines);
+    rays_ += count + static_cast<std::uint64_t>(blockLines);
+    const double rays = static_cast<double>(count) + blockLines;
+    const auto share = static_cast<float>(rays / static_cast<double>(rays_));
+    forPatches(mesh_.size(), [&](std::size_t i) {
+        sender_[i].excess = reflected(i) - control;
+        const Rgb found = direct(i) + control + Rgb(received_.take(i) / area(i));
+        light_[i] += share * (found - light_[i]);
+    });
+    input_.control = control;
+    global_->exchange(input_, blockLines, received_, losses, counts_, progress);
+    ++input_.iteration;
+    includeInMean(rays, losses);
+    forPatches(mesh_.size(), [&](std::size_t i) { light_[i] += share * Rgb(received_.take(i) / area(i)); });
+}
+
+/// About the area-weighted median of a value per channel, what is not a front being taken for a patch of 0. From some patches: any
+/// constant will do.
+template <typename Value>
+Rgb RelaxationRun::median(Value&& value) const {
+    const std::size_t count = mesh_.size();
+    const std::size_t step = (count + kMedianSample - 1) / kMedianSample;
+    const double all = orderedSum(count, 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(radiosity(i))); });
+    const double lost = std::clamp((sum(losses_.backFaces) + sum(losses_.escaped)) / all, 0.0, 0.999);
+    Rgb result(0.0F);
+    std::vector<std::pair<float, double>> values;
+    for (int c = 0; c < 3; ++c) {
+        values.clear();
+        double total = 0.0;
+        for (std::size_t i = step / 2; i < count; i += step) {
+            values.emplace_back(value(i)[c], area(i));
+            total += area(i);
+        }
+        std::sort(values.begin(), values.end());
+        double below = lost / (1.0 - lost) * total;
+        const double half = 0.5 * (total + below);
+        for (const auto& [at, weight] : values) {
+            if (below >= half) break;
+            result[c] = std::max(at, 0.0F);
+            below += weight;
+        }
+    }
+    return result;
+}
+
+} // namespace lambert
