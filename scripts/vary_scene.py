@@ -139,8 +139,8 @@ def move(polygons, name, offset):
             for material, points in polygons]
 
 
-def rotate(polygons, axis, degrees):
-    """Turns about the bounding box's centre (Rodrigues' formula)."""
+def rotation(polygons, axis, degrees):
+    """The function that turns a point about the bounding box's centre (Rodrigues' formula), and a direction likewise."""
     size = math.hypot(*axis)
     if size == 0:
         raise InputError("--rotate: the axis has no length")
@@ -149,10 +149,18 @@ def rotate(polygons, axis, degrees):
     middle = tuple((min(values) + max(values)) / 2 for values in zip(*corners))
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
 
-    def turned(p):
-        v = sub(p, middle)
+    def turned_direction(v):
         along, across = dot(axis, v), cross(axis, v)
-        return tuple(m + c * x + s * y + (1 - c) * along * a for m, x, y, a in zip(middle, v, across, axis))
+        return tuple(c * x + s * y + (1 - c) * along * a for x, y, a in zip(v, across, axis))
+
+    def turned(p):
+        return tuple(m + x for m, x in zip(middle, turned_direction(sub(p, middle))))
+    return turned, turned_direction
+
+
+def rotate(polygons, axis, degrees):
+    """Turns about the bounding box's centre."""
+    turned, _ = rotation(polygons, axis, degrees)
     return [(material, [turned(p) for p in points]) for material, points in polygons]
 
 
