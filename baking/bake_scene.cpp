@@ -82,7 +82,7 @@ void assessBacks(const PatchMesh& mesh, const RayCaster& rays, const FormFactorR
 }
 
 /// The matrix first, then the light.
-void solveStored(const BakeOptions& options, BakedScene& result, Progress& progress) {
+void solveStored(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
     Stopwatch watch;
     SceneMatrix obtained = obtainMatrix(options.formFactors, result.mesh, *result.rays, progress);
     const FormFactorMatrix& matrix = obtained.matrix;
@@ -98,17 +98,17 @@ void solveStored(const BakeOptions& options, BakedScene& result, Progress& progr
     result.rows.entries = matrix.entryCount();
     result.rows.bytes = matrix.bytes();
     result.seconds.formFactors = watch.lap();
-    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
+    result.solution = solve(problem, rows, options.solver, progress);
     result.seconds.solve = watch.lap();
 }
 
 /// Rows are computed as the solver asks for them.
-void solveComputed(const BakeOptions& options, BakedScene& result, Progress& progress) {
+void solveComputed(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
     Stopwatch watch;
     result.plan = planTransport(options.formFactors.transport, result.mesh, *result.rays, progress);
     const auto method = makeMethod(*result.plan, result.mesh, *result.rays);
     ComputedRows rows(*method);
-    result.solution = solve(SolverProblem(result.mesh), rows, options.solver, progress);
+    result.solution = solve(problem, rows, options.solver, progress);
     result.rayCount = rows.rowsComputed() * method->raysPerRow();
     result.rows.largestClosureError = rows.largestClosureError();
     assessBacks(result.mesh, *result.rays, rows, result.rows);
@@ -117,10 +117,6 @@ void solveComputed(const BakeOptions& options, BakedScene& result, Progress& pro
 
 void collectWarnings(BakedScene& result) {
     const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
-    if (const std::size_t lights = result.scene->lights.size(); lights > 0)
-        warn(fmt::format("the scene's {} without area (point, spot, directional) {} not used yet: all light is that of "
-                         "emitting materials",
-                         lights == 1 ? "light" : fmt::format("{} lights", lights), lights == 1 ? "is" : "are"));
     if (result.rows.backFaceFraction > kBackFaceWarning)
         warn(fmt::format(
             "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
@@ -140,7 +136,11 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     BakedScene result{meshLitScene(scene, options.mesh, progress)};
     result.seconds.mesh = watch.lap();
 
-    (options.formFactors.transport.stored ? solveStored : solveComputed)(options, result, progress);
+    const SolverProblem problem(
+        result.mesh,
+        DirectLight(*result.rays, options.directLight).irradiance(result.mesh, result.scene->lights, progress));
+    result.seconds.directLight = watch.lap();
+    (options.formFactors.transport.stored ? solveStored : solveComputed)(options, problem, result, progress);
     watch.lap();
 
     progress.begin("bake", 0);

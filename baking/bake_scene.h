@@ -3,6 +3,7 @@
 #include "baking/mesh_scene.h"
 #include "baking/reconstruction.h"
 #include "formfactors/matrix_source.h"
+#include "solver/direct_light.h"
 #include "solver/solver.h"
 
 #include <memory>
@@ -16,13 +17,14 @@ namespace lambert {
 struct BakeOptions {
     MeshOptions mesh;
     MatrixSource formFactors;
+    DirectLightOptions directLight;
     SolverOptions solver;
     ReconstructionOptions reconstruction;
 };
 
 /// Seconds of wall time per stage.
 struct BakeSeconds {
-    double mesh = 0.0, formFactors = 0.0, solve = 0.0, bake = 0.0;
+    double mesh = 0.0, formFactors = 0.0, directLight = 0.0, solve = 0.0, bake = 0.0;
 };
 
 /// How the computed rows keep their identities.
@@ -43,16 +45,15 @@ struct BakedScene : MeshedScene {
     std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file
     std::optional<RepairReport> repair{};     //!< of the form factors; none: not repaired
     std::unique_ptr<MatrixJournal> journal{}; //!< see SceneMatrix
-    std::uint64_t rayCount = 0;
+    std::uint64_t rayCount = 0;               //!< of the form factors
     RowQuality rows{};
     std::size_t separatedFaces = 0;
     BakeSeconds seconds{};
     std::vector<std::string> warnings{}; //!< one line each
 };
 
-/// meshLitScene, then form factors (without a matrix: while the solver works), solution, and reconstruction at the vertices.
-/// Throws InputError if the scene
-/// has no light, Cancelled.
+/// meshLitScene, then the light of lights without area, form factors (without a matrix: while the solver works), solution, and
+/// reconstruction at the vertices. Throws InputError if the scene has no light, Cancelled.
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress);
 
 } // namespace lambert

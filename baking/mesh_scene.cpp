@@ -2,8 +2,6 @@
 
 #include "core/error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace lambert {
@@ -14,10 +12,9 @@ void requireLight(const Scene& scene) {
     const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
         return scene.materials[polygon.material].emittedRadiance != Rgb(0.0F);
     });
-    if (lit) return;
-    const char* punctual = scene.lights.empty() ? "" : ", and lights without area are not used yet";
-    throw InputError(fmt::format(
-        "the scene has no light: no material that is used emits{}; give one with --emit MATERIAL=r,g,b", punctual));
+    if (!lit)
+        throw InputError("the scene has no light: no material that is used emits, and there is no light without area; "
+                         "give one with --emit MATERIAL=r,g,b");
 }
 
 /// What no material's constants tell: an emission texture may be black.
@@ -45,9 +42,10 @@ MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& 
 }
 
 MeshedScene meshLitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
-    requireLight(scene);
+    const bool needsEmitter = scene.lights.empty();
+    if (needsEmitter) requireLight(scene);
     MeshedScene result = meshScene(scene, options, progress);
-    requireLight(result.mesh);
+    if (needsEmitter) requireLight(result.mesh);
     return result;
 }
 

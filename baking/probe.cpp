@@ -51,13 +51,14 @@ RgbSum interpolate(const BakedScene& scene, const SurfacePoint& point) {
     return sum;
 }
 
-RgbSum gather(const BakedScene& scene, const Hemicube& hemicube, const ProbePoint& point, const glm::vec3& normal,
-              RowAccumulator& accumulator) {
+/// What the patches and the lights without area send to a point in space.
+RgbSum gather(const BakedScene& scene, const DirectLight& lights, const Hemicube& hemicube, const ProbePoint& point,
+              const glm::vec3& normal, RowAccumulator& accumulator) {
     const glm::vec3 origin = point.position + scene.rays->originOffset(0.0F) * normal;
     hemicube.addHemicube(origin, normal, 0.0F, accumulator);
     FormFactorRow row;
     accumulator.take(row);
-    RgbSum sum(0.0);
+    RgbSum sum = lights.irradiance(point.position, normal, scene.scene->lights);
     for (const FormFactor& entry : row.entries)
         sum += static_cast<double>(entry.value) * scene.solution.radiosity[entry.patch];
     return sum;
@@ -68,6 +69,7 @@ RgbSum gather(const BakedScene& scene, const Hemicube& hemicube, const ProbePoin
 std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, std::span<const ProbePoint> points) {
     const float reach = kOnSurface * scene.rays->bounds().diagonal();
     const Hemicube hemicube(scene.mesh, *scene.rays, {});
+    const DirectLight lights(*scene.rays, {});
     std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()),
                                              RowAccumulator(scene.mesh.size()));
     std::vector<ProbeReading> readings(points.size());
@@ -76,9 +78,9 @@ std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, std::span<con
             const glm::vec3 normal = glm::normalize(points[i].normal);
             const auto surface = nearestFront(scene, points[i].position, normal, reach);
             readings[i].onSurface = surface.has_value();
-            readings[i].irradiance =
-                surface ? interpolate(scene, *surface)
-                        : gather(scene, hemicube, points[i], normal, accumulators[static_cast<std::size_t>(worker)]);
+            readings[i].irradiance = surface ? interpolate(scene, *surface)
+                                             : gather(scene, lights, hemicube, points[i], normal,
+                                                      accumulators[static_cast<std::size_t>(worker)]);
         }
     });
     return readings;

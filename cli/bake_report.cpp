@@ -156,10 +156,14 @@ Json bakeReport(const BakeReportInput& in) {
                               {"largest_closure_error", baked.rows.largestClosureError},
                               {"back_face_fraction", baked.rows.backFaceFraction},
                               {"repair", repairJson(baked.repair)}};
-    report["seconds"] = {
-        {"read", in.readSeconds},       {"mesh", baked.seconds.mesh}, {"form_factors", baked.seconds.formFactors},
-        {"solve", baked.seconds.solve}, {"bake", baked.seconds.bake}, {"write", in.writeSeconds},
-        {"total", in.totalSeconds}};
+    report["seconds"] = {{"read", in.readSeconds},
+                         {"mesh", baked.seconds.mesh},
+                         {"form_factors", baked.seconds.formFactors},
+                         {"direct_light", baked.seconds.directLight},
+                         {"solve", baked.seconds.solve},
+                         {"bake", baked.seconds.bake},
+                         {"write", in.writeSeconds},
+                         {"total", in.totalSeconds}};
     report["energy"] = {{"emitted", jsonVector(energy.emitted)},   {"received", jsonVector(energy.received)},
                         {"absorbed", jsonVector(energy.absorbed)}, {"back_faces", jsonVector(energy.backFaces)},
                         {"escaped", jsonVector(energy.escaped)},   {"imbalance", energy.imbalance()}};

@@ -66,14 +66,8 @@ private:
     void note(std::string problem, std::string remedy) { found_.push_back({std::move(problem), std::move(remedy)}); }
 
     void lookAtLight() {
-        const char* remedy = "give a material one with --emit MATERIAL=r,g,b";
-        if (facts_.emitted == glm::dvec3(0.0)) {
-            note(scene_.lights.empty() ? "there is no light"
-                                       : "no material emits, and bake does not use other lights yet",
-                 remedy);
-        } else if (!scene_.lights.empty()) {
-            note("bake does not use lights without area yet", remedy);
-        }
+        if (facts_.emitted == glm::dvec3(0.0) && scene_.lights.empty())
+            note("there is no light", "give a material one with --emit MATERIAL=r,g,b, or a sky with --sky");
     }
 
     void lookAtSize(bool unitIsGiven) {

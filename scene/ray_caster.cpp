@@ -152,6 +152,27 @@ bool RayCaster::occluded(const Ray& ray) const {
     return query.tfar < 0.0F;
 }
 
+void RayCaster::occluded(ShadowPacket& packet) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) RTCRay16 rays;
+    constexpr int kSize = ShadowPacket::kSize;
+    std::copy_n(packet.originX, kSize, rays.org_x);
+    std::copy_n(packet.originY, kSize, rays.org_y);
+    std::copy_n(packet.originZ, kSize, rays.org_z);
+    std::copy_n(packet.directionX, kSize, rays.dir_x);
+    std::copy_n(packet.directionY, kSize, rays.dir_y);
+    std::copy_n(packet.directionZ, kSize, rays.dir_z);
+    std::copy_n(packet.maxDistance, kSize, rays.tfar);
+    std::fill_n(rays.tnear, kSize, 0.0F);
+    std::fill_n(rays.time, kSize, 0.0F);
+    std::fill_n(rays.mask, kSize, ~0U);
+    std::fill_n(rays.flags, kSize, 0U);
+    rtcOccluded16(packet.active, impl_->embree.handle(), &context, &rays);
+    for (int lane = 0; lane < kSize; ++lane) packet.occluded[lane] = packet.active[lane] != 0 && rays.tfar[lane] < 0.0F;
+}
+
 const Scene& RayCaster::scene() const { return impl_->scene; }
 const Bounds& RayCaster::bounds() const { return impl_->bounds; }
 

@@ -19,7 +19,7 @@ SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIr
         const RgbSum e = direct(i);
         lit = lit || area(i) * glm::dot(e, e) > 0.0;
     }
-    if (!(squares > 0.0) && !lit) throw InputError("the scene has no light: no material emits");
+    if (!(squares > 0.0) && !lit) throw InputError("the scene has no light: no material emits, and no light without area reaches a front");
     sourceNorm_ = std::sqrt(squares);
 }
 

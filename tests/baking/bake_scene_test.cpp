@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace lambert {
 namespace {
@@ -123,13 +124,15 @@ TEST(BakeScene, ASceneWithoutLightNamesTheOption) {
     }
 }
 
-TEST(BakeScene, SaysOnceThatLightsWithoutAreaAreNotUsed) {
-    Scene scene = roomWithBoxScene();
-    EXPECT_TRUE(bake(scene, 0, 16).warnings.empty());
-    scene.lights.resize(2);
-    const BakedScene baked = bake(scene, 0, 16);
-    ASSERT_EQ(baked.warnings.size(), 1U);
-    EXPECT_NE(baked.warnings[0].find("2 lights without area"), std::string::npos) << baked.warnings[0];
+TEST(BakeScene, ASceneLitByAPointLightAloneKeepsTheEnergyBalance) {
+    const Material wall = greyMaterial("wall", 0.5F);
+    Scene scene = boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall});
+    scene.lights.push_back({.name = "bulb", .position = {0.4F, 0.5F, 0.7F}});
+    const BakedScene baked = bake(scene, 300, 64);
+    // All of 4π I meets the walls; the rest is the error of 64 points per patch.
+    EXPECT_NEAR(baked.solution.energy.received.x, 4.0 * std::numbers::pi, 2e-3 * 4.0 * std::numbers::pi);
+    EXPECT_EQ(baked.solution.energy.emitted.x, 0.0);
+    EXPECT_LE(std::abs(baked.solution.energy.imbalance()), 5e-3); // reciprocity is not enforced
 }
 
 TEST(BakeScene, EnergyImbalanceOfRawRowsIsSmallAt1000Patches) {
