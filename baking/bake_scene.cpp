@@ -81,6 +81,16 @@ void assessBacks(const PatchMesh& mesh, const RayCaster& rays, const FormFactorR
     }
 }
 
+/// The whole and, if wanted, each group of lights.
+void solveFor(const BakeOptions& options, const SolverProblem& problem, FormFactorRows& rows, BakedScene& result,
+              Progress& progress) {
+    result.solution = solve(problem, rows, options.solver, progress);
+    if (!options.perLight) return;
+    SolverOptions solver = options.solver;
+    solver.keepBounces = false;
+    result.lights = bakePerLight(result, rows, {options.directLight, solver, options.reconstruction}, progress);
+}
+
 /// The matrix first, then the light.
 void solveStored(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
     Stopwatch watch;
@@ -98,7 +108,7 @@ void solveStored(const BakeOptions& options, const SolverProblem& problem, Baked
     result.rows.entries = matrix.entryCount();
     result.rows.bytes = matrix.bytes();
     result.seconds.formFactors = watch.lap();
-    result.solution = solve(problem, rows, options.solver, progress);
+    solveFor(options, problem, rows, result, progress);
     result.seconds.solve = watch.lap();
 }
 
@@ -108,7 +118,7 @@ void solveComputed(const BakeOptions& options, const SolverProblem& problem, Bak
     result.plan = planTransport(options.formFactors.transport, result.mesh, *result.rays, progress);
     const auto method = makeMethod(*result.plan, result.mesh, *result.rays);
     ComputedRows rows(*method);
-    result.solution = solve(problem, rows, options.solver, progress);
+    solveFor(options, problem, rows, result, progress);
     result.rayCount = rows.rowsComputed() * method->raysPerRow();
     result.rows.largestClosureError = rows.largestClosureError();
     assessBacks(result.mesh, *result.rays, rows, result.rows);
@@ -138,7 +148,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
 
     const SolverProblem problem(
         result.mesh,
-        DirectLight(*result.rays, options.directLight).irradiance(result.mesh, result.scene->lights, progress));
+        DirectLight(*result.rays, options.directLight).irradiance(result.mesh, lightsOf(*result.scene), progress));
     result.seconds.directLight = watch.lap();
     (options.formFactors.transport.stored ? solveStored : solveComputed)(options, problem, result, progress);
     watch.lap();

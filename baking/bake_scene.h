@@ -1,6 +1,7 @@
 #pragma once
 
 #include "baking/mesh_scene.h"
+#include "baking/per_light.h"
 #include "baking/reconstruction.h"
 #include "formfactors/matrix_source.h"
 #include "solver/direct_light.h"
@@ -20,6 +21,7 @@ struct BakeOptions {
     DirectLightOptions directLight;
     SolverOptions solver;
     ReconstructionOptions reconstruction;
+    bool perLight = false; //!< each group of lights on its own as well, see bakePerLight
 };
 
 /// Seconds of wall time per stage.
@@ -41,6 +43,7 @@ struct RowQuality {
 struct BakedScene : MeshedScene {
     RadiositySolution solution{};
     BakedMesh baked{};
+    std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
     std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file
     std::optional<RepairReport> repair{};     //!< of the form factors; none: not repaired

@@ -42,7 +42,7 @@ MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& 
 }
 
 MeshedScene meshLitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
-    const bool needsEmitter = scene.lights.empty();
+    const bool needsEmitter = scene.lights.empty() && scene.environment == nullptr;
     if (needsEmitter) requireLight(scene);
     MeshedScene result = meshScene(scene, options, progress);
     if (needsEmitter) requireLight(result.mesh);

@@ -111,6 +111,9 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     const auto raysPerRow = static_cast<double>(method->raysPerRow());
     result.secondsPerRay = raysPerRow > 0.0 ? secondsPerRow / raysPerRow : kSecondsPerRay / threadCount();
     result.seconds.formFactors = secondsPerRow * patches;
+    result.seconds.directLight = result.secondsPerRay * patches *
+                                 (static_cast<double>(meshed.scene->lights.size()) * options.directLight.points +
+                                  (meshed.scene->environment ? static_cast<double>(options.directLight.skyRays) : 0.0));
     result.seconds.solve = predictPasses(pilot.reflected, options.solver) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;
     result.matrixBytes =

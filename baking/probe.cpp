@@ -53,12 +53,12 @@ RgbSum interpolate(const BakedScene& scene, const SurfacePoint& point) {
 
 /// What the patches and the lights without area send to a point in space.
 RgbSum gather(const BakedScene& scene, const DirectLight& lights, const Hemicube& hemicube, const ProbePoint& point,
-              const glm::vec3& normal, RowAccumulator& accumulator) {
+              std::uint32_t index, const glm::vec3& normal, RowAccumulator& accumulator) {
     const glm::vec3 origin = point.position + scene.rays->originOffset(0.0F) * normal;
     hemicube.addHemicube(origin, normal, 0.0F, accumulator);
     FormFactorRow row;
     accumulator.take(row);
-    RgbSum sum = lights.irradiance(point.position, normal, scene.scene->lights);
+    RgbSum sum = lights.irradiance(point.position, normal, index, lightsOf(*scene.scene));
     for (const FormFactor& entry : row.entries)
         sum += static_cast<double>(entry.value) * scene.solution.radiosity[entry.patch];
     return sum;
@@ -79,8 +79,8 @@ std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, std::span<con
             const auto surface = nearestFront(scene, points[i].position, normal, reach);
             readings[i].onSurface = surface.has_value();
             readings[i].irradiance = surface ? interpolate(scene, *surface)
-                                             : gather(scene, lights, hemicube, points[i], normal,
-                                                      accumulators[static_cast<std::size_t>(worker)]);
+                                             : gather(scene, lights, hemicube, points[i], static_cast<std::uint32_t>(i),
+                                                      normal, accumulators[static_cast<std::size_t>(worker)]);
         }
     });
     return readings;

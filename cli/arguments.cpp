@@ -63,6 +63,7 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("DEGREES")
         ->check(between(0.0, 180.0))
         ->group("Solution");
+    addLightArguments(command, a.light);
     addSolverArguments(command, a);
 }
 
@@ -136,6 +137,8 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
     options.mesh = meshOptions(a);
     options.formFactors = matrixSource(a, run);
+    checkLights(a.light);
+    options.directLight = {.points = a.light.points, .skyRays = a.light.skyRays, .seed = run.seed};
     options.solver = solverOptions(a);
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;

@@ -2,6 +2,7 @@
 
 #include "baking/bake_scene.h"
 #include "baking/write_baked.h"
+#include "cli/light_arguments.h"
 #include "cli/scene_arguments.h"
 #include "rendering/camera_rays.h"
 #include "scene/scene_reader.h"
@@ -38,6 +39,7 @@ struct TransportArguments {
     std::filesystem::path checkpoint;
     bool resume = false;
     double checkpointInterval = 60.0; //!< seconds
+    LightArguments light;
     // Solution; see cli/solver_arguments.cpp
     std::optional<std::string> solver;
     std::optional<double> tolerance, relaxation;

@@ -21,6 +21,7 @@ struct BakeArguments {
     std::string reconstruction = "average";
     std::string quantity = "radiosity";
     std::string exposure = "auto";
+    bool perLight = false;
     bool skipExisting = false;
     bool dryRun = false;
 };

@@ -35,9 +35,7 @@ ExitCode bakeOneScene(const BakeArguments& a) {
     if (a.dryRun || a.skipExisting) return runBatch(a, {job}, false);
     std::vector<std::filesystem::path> targets = resultFiles(job);
     for (const auto& target : {a.run.json, a.transport.checkpoint}) targets.push_back(target);
-    std::vector<std::filesystem::path> inputs = inputFiles(sceneOf(a, job));
-    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
-    checkTargets(targets, inputs);
+    checkTargets(targets, filesRead(a, job));
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -96,6 +94,10 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
         .add_option("--exposure", arguments->exposure,
                     "EV, display = value · 2^EV; auto: 99 % of all is below 0.9 [auto]")
         ->type_name("EV")
+        ->group("Bake");
+    command
+        .add_flag("--per-light", arguments->perLight,
+                  "Also writes each light on its own: emitting materials, lights by name, the sky")
         ->group("Bake");
     addTransportArguments(command, arguments->transport);
     addPictureArguments(command, arguments->picture);

@@ -1,5 +1,6 @@
 #include "cli/bake_job.h"
 #include "cli/bake_report.h"
+#include "cli/light_files.h"
 #include "cli/scene_files.h"
 #include "cli/terminal_text.h"
 
@@ -76,6 +77,7 @@ ReadResult readJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Pr
     if (!read.report.overrides.file.empty())
         log.line(fmt::format("{}: changes the scene (--no-overrides ignores it)", read.report.overrides.file.string()));
     for (const std::string& warning : read.report.warnings) log.warning(warning);
+    addDaylight(read.scene, a.transport.light);
     checkCamera(pictureArguments(a, job), read.scene);
     progress.throwIfCancelled();
     log.line(fmt::format("{} polygons, {} materials", read.scene.polygons.size(), read.scene.materials.size()));
@@ -100,6 +102,13 @@ std::vector<fs::path> resultFiles(const BakeJob& job) {
     return files;
 }
 
+std::vector<fs::path> filesRead(const BakeArguments& a, const BakeJob& job) {
+    std::vector<fs::path> files = inputFiles(sceneOf(a, job));
+    for (const fs::path& file : {a.transport.formFactors, skyPicture(a.transport.light)})
+        if (!file.empty()) files.push_back(file);
+    return files;
+}
+
 bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
     std::error_code error;
     std::optional<fs::file_time_type> oldest;
@@ -109,8 +118,7 @@ bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
         oldest = oldest ? std::min(*oldest, time) : time;
     }
     if (!oldest) return false;
-    std::vector<fs::path> inputs = inputFiles(sceneOf(a, job));
-    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
+    const std::vector<fs::path> inputs = filesRead(a, job);
     return std::none_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
         const fs::file_time_type time = fs::last_write_time(input, error);
         return !error && time > *oldest;
@@ -121,11 +129,15 @@ void checkArguments(const BakeArguments& a) {
     typedExposure(a.exposure);
     checkPicture(a.picture);
     bakeOptions(a.transport, a.run);
+    if (a.perLight && a.skipExisting)
+        throw UsageError("--per-light: which files it writes is known only once a scene is read; not with "
+                         "--skip-existing");
 }
 
 BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
     const Stopwatch total;
-    const BakeOptions options = bakeOptions(a.transport, a.run);
+    BakeOptions options = bakeOptions(a.transport, a.run);
+    options.perLight = a.perLight;
     const std::optional<float> typed = typedExposure(a.exposure);
     const ReadResult read = readJob(a, job, log, progress);
     const double readSeconds = total.seconds();
@@ -141,8 +153,9 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
     const Stopwatch writing;
-    for (const BakeJob::Output& output : job.outputs)
-        writeBaked(baked.baked, output.path, output.format, {quantityOf(a), exposure, LAMBERT_VERSION});
+    const BakeOutputOptions output{quantityOf(a), exposure, LAMBERT_VERSION};
+    for (const BakeJob::Output& target : job.outputs) writeBaked(baked.baked, target.path, target.format, output);
+    const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, filesRead(a, job));
     std::optional<Picture> shot;
     if (!job.image.empty()) {
         shot = picture(pictureArguments(a, job), *baked.scene, *baked.rays);
@@ -154,6 +167,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.seconds = total.seconds();
     outcome.report = bakeReport({baked, read.report, sceneOf(a, job), a.transport, a.run, shot,
                                  static_cast<double>(exposure), readSeconds, writeSeconds, outcome.seconds});
+    if (a.perLight) outcome.report["lights"] = lightsJson(lights);
     outcome.summary = summaryOf(baked, exposure, outcome.seconds);
     outcome.patches = baked.mesh.size();
     outcome.rays = baked.rayCount;
@@ -161,9 +175,10 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.imbalance = baked.solution.energy.imbalance();
     if (baked.journal) baked.journal->remove();
     log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
-    if (baked.solution.residual > options.solver.tolerance && options.solver.bounces == 0) {
-        log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", baked.solution.residual,
-                                options.solver.tolerance));
+    double residual = baked.solution.residual;
+    for (const BakedLight& light : baked.lights) residual = std::max(residual, light.residual);
+    if (residual > options.solver.tolerance && options.solver.bounces == 0) {
+        log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", residual, options.solver.tolerance));
         outcome.exitCode = ExitCode::TargetMissed;
     }
     return outcome;
@@ -182,7 +197,7 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
     BakeOutcome outcome;
     outcome.patches = predicted.patches;
     outcome.rays = predicted.rays;
-    outcome.seconds = readSeconds + s.mesh + s.formFactors + s.solve + s.bake + writeSeconds;
+    outcome.seconds = readSeconds + s.mesh + s.formFactors + s.directLight + s.solve + s.bake + writeSeconds;
     outcome.peakMemory = predicted.peakMemory;
     outcome.report = {{"scene", job.scene.string()},
                       {"patches", predicted.patches},
@@ -194,6 +209,7 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
                        {{"read", readSeconds},
                         {"mesh", s.mesh},
                         {"form_factors", s.formFactors},
+                        {"direct_light", s.directLight},
                         {"solve", s.solve},
                         {"bake", s.bake},
                         {"write", writeSeconds},

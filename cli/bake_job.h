@@ -34,6 +34,9 @@ SceneArguments sceneOf(const BakeArguments& arguments, const BakeJob& job);
 /// The files with the light: an OBJ comes with an MTL, then the picture. The log is not among them.
 std::vector<std::filesystem::path> resultFiles(const BakeJob& job);
 
+/// What a job is computed from: the scene's files, and those that options name.
+std::vector<std::filesystem::path> filesRead(const BakeArguments& arguments, const BakeJob& job);
+
 /// Whether all result files are there and none is older than one of the files that the scene is read from.
 bool isUpToDate(const BakeArguments& arguments, const BakeJob& job);
 

@@ -34,6 +34,7 @@ Json optionsJson(const BakeReportInput& in) {
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
     options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
+    options.update(lightOptionsJson(in.transport.light));
     options["quality"] = in.transport.quality;
     options.update(solverOptionsJson(solverOptions(in.transport)));
     options["threads"] = threadCount();
@@ -129,9 +130,14 @@ std::vector<MaterialLight> materialLight(const BakedScene& baked) {
     return used;
 }
 
+Json energyJson(const EnergyBalance& energy) {
+    return {{"emitted", jsonVector(energy.emitted)},   {"received", jsonVector(energy.received)},
+            {"absorbed", jsonVector(energy.absorbed)}, {"back_faces", jsonVector(energy.backFaces)},
+            {"escaped", jsonVector(energy.escaped)},   {"imbalance", energy.imbalance()}};
+}
+
 Json bakeReport(const BakeReportInput& in) {
     const BakedScene& baked = in.baked;
-    const EnergyBalance& energy = baked.solution.energy;
     Json report;
     report["scene"] = in.scene.path.string();
     report["patches"] = baked.mesh.size();
@@ -164,9 +170,7 @@ Json bakeReport(const BakeReportInput& in) {
                          {"bake", baked.seconds.bake},
                          {"write", in.writeSeconds},
                          {"total", in.totalSeconds}};
-    report["energy"] = {{"emitted", jsonVector(energy.emitted)},   {"received", jsonVector(energy.received)},
-                        {"absorbed", jsonVector(energy.absorbed)}, {"back_faces", jsonVector(energy.backFaces)},
-                        {"escaped", jsonVector(energy.escaped)},   {"imbalance", energy.imbalance()}};
+    report["energy"] = energyJson(baked.solution.energy);
     Json materials = Json::array();
     for (const MaterialLight& light : materialLight(baked))
         materials.push_back({{"name", light.name},

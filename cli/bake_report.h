@@ -39,6 +39,8 @@ nlohmann::ordered_json sceneOptionsJson(const SceneArguments& scene, const Appli
 /// The report of one bake; keys are documented in docs/output.md.
 nlohmann::ordered_json bakeReport(const BakeReportInput& input);
 
+nlohmann::ordered_json energyJson(const EnergyBalance& energy);
+
 /// A report as text.
 std::string jsonText(const nlohmann::ordered_json& json);
 

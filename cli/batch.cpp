@@ -36,7 +36,7 @@ void prepareTargets(const BakeArguments& a, const BakeJob& job) {
     if (!job.log.empty()) targets.push_back(job.log);
     for (const fs::path& target : targets)
         if (!a.outputDir.empty() && target.has_parent_path()) createFolder(target.parent_path());
-    checkTargets(targets, inputFiles(sceneOf(a, job)));
+    checkTargets(targets, filesRead(a, job));
 }
 
 /// An abandoned job leaves nothing, not even a log.

@@ -150,7 +150,7 @@ void refuseOverwriting(const BakeArguments& a, const std::vector<BakeJob>& jobs)
     std::set<fs::path> inputs;
     for (const BakeJob& job : jobs) {
         try {
-            for (const fs::path& input : inputFiles(sceneOf(a, job))) inputs.insert(canonicalPath(input));
+            for (const fs::path& input : filesRead(a, job)) inputs.insert(canonicalPath(input));
         } catch (const InputError&) { // the job itself will say so
             inputs.insert(canonicalPath(job.scene));
         }

@@ -45,14 +45,16 @@ ExitCode probe(const ProbeArguments& a) {
     const BakeOptions options = bakeOptions(a.transport, a.run);
     std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
     inputs.push_back(a.points);
-    if (!a.transport.formFactors.empty()) inputs.push_back(a.transport.formFactors);
+    for (const std::filesystem::path& file : {a.transport.formFactors, skyPicture(a.transport.light)})
+        if (!file.empty()) inputs.push_back(file);
     checkTargets(std::array{a.output, a.run.json, a.transport.checkpoint}, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
     const Stopwatch total;
     const std::vector<ProbePoint> points = readPoints(a.points);
-    const ReadResult read = readScene(a.scene, &progress);
+    ReadResult read = readScene(a.scene, &progress);
+    addDaylight(read.scene, a.transport.light);
     const double readSeconds = total.seconds();
     logReport(a.run, read.report);
     const BakedScene baked = bakeScene(read.scene, options, progress);

@@ -165,6 +165,7 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     prepared.cameras = scene.cameras;
     prepared.textures = scene.textures;
     prepared.lights = scene.lights;
+    prepared.environment = scene.environment;
     prepared.polygons.reserve(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
         auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance);

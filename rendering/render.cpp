@@ -6,6 +6,7 @@
 #include "core/random.h"
 #include "rendering/camera_rays.h"
 #include "rendering/tone_mapping.h"
+#include "scene/environment.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -83,12 +84,17 @@ private:
     }
 
     Rgb radianceOf(const RayPacket& packet, int lane) const {
-        if (packet.polygon[lane] == kNone) return options_.background;
+        const glm::vec3 direction{packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]};
+        if (packet.polygon[lane] == kNone) return beyondTheScene(direction);
         const Hit hit{packet.polygon[lane], packet.u[lane], packet.v[lane], 0.0F, packet.facing[lane] < 0.0F};
         if (!isOccluder(caster_.scene(), caster_.scene().polygons[hit.polygon])) return radianceAt(hit);
-        const auto beyond =
-            behindOccluders(hit, {packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]});
-        return beyond ? radianceAt(*beyond) : options_.background;
+        const auto beyond = behindOccluders(hit, direction);
+        return beyond ? radianceAt(*beyond) : beyondTheScene(direction);
+    }
+
+    Rgb beyondTheScene(const glm::vec3& direction) const {
+        const auto& environment = caster_.scene().environment;
+        return environment ? environment->radiance(glm::normalize(glm::dvec3(direction))) : options_.background;
     }
 
     /// What a ray that has met an occluder would meet without it: what is not in the mesh is not in its picture.

@@ -15,7 +15,7 @@ struct RenderOptions {
     int height = 512;                        //!< pixels, >= 1
     int samplesPerAxis = 4;                  //!< a pixel averages the square of it, stratified; 1 to 64
     Quantity quantity = Quantity::Radiosity; //!< what is shown; emitters show their radiosity in any case
-    Rgb background{0.0F};                    //!< radiance where a ray leaves the scene
+    Rgb background{0.0F};                    //!< radiance where a ray leaves a scene that has no environment
     std::uint64_t seed = 0;                  //!< of the samples' places within a pixel
 
     /// EV at which every sample is tone-mapped before a pixel averages them: the picture is then of display

@@ -96,6 +96,8 @@ struct PunctualLight {
     float outerConeAngle = 0.785398F;       //!< radians, half angle, at most π/2; nothing outside; of a spot
 };
 
+class Environment;
+
 /// Source polygons in world space, in metres, with their materials, lights and cameras. Immutable once read.
 struct Scene {
     std::vector<glm::vec3> positions;
@@ -106,6 +108,7 @@ struct Scene {
     std::vector<SurfaceCorners> surfaces; //!< of the polygons that need them
     std::vector<std::shared_ptr<const Texture>> textures;
     std::vector<PunctualLight> lights;
+    std::shared_ptr<const Environment> environment{}; //!< what the scene lies in; none: darkness
 };
 
 /// The corner `k` of a polygon.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -23,8 +24,6 @@ double srgbDecoded(double value) { return value <= 0.04045 ? value / 12.92 : std
 
 namespace {
 
-/// A plain square of 16,384 texels.
-constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
 constexpr int kMostChannels = 64;
 constexpr int kPixelsAtOnce = 1 << 20;
 
@@ -92,13 +91,20 @@ std::size_t texelCount(int width, int height) {
 class Reading {
 public:
     /// `file` is what OpenImageIO calls the image.
-    Reading(OIIO::ImageInput& input, const std::string& file, std::string name, TextureContent content)
-        : input_(input), spec_(input.spec()), file_(file), name_(std::move(name)), content_(content) {}
+    Reading(OIIO::ImageInput& input, const std::string& file, std::string name, TextureContent content,
+            std::uint64_t mostTexels)
+        : input_(input),
+          spec_(input.spec()),
+          file_(file),
+          name_(std::move(name)),
+          content_(content),
+          mostTexels_(mostTexels) {}
 
     std::shared_ptr<const Texture> run() {
         if (spec_.width < 1 || spec_.height < 1 || spec_.nchannels < 1) throw InputError("has no pixels");
-        if (static_cast<std::uint64_t>(spec_.width) * static_cast<std::uint64_t>(spec_.height) > kMostTexels)
-            throw InputError(fmt::format("found {} x {} pixels, allowed are 2^28 in all", spec_.width, spec_.height));
+        if (static_cast<std::uint64_t>(spec_.width) * static_cast<std::uint64_t>(spec_.height) > mostTexels_)
+            throw InputError(fmt::format("found {} x {} pixels, allowed are 2^{} in all", spec_.width, spec_.height,
+                                         std::bit_width(mostTexels_) - 1));
         if (spec_.nchannels > kMostChannels)
             throw InputError(fmt::format("found {} channels, allowed are {}", spec_.nchannels, kMostChannels));
         if (spec_.deep || spec_.depth > 1) throw InputError("found a deep or volume image, expected a flat one");
@@ -198,11 +204,12 @@ private:
     const std::string& file_;
     std::string name_;
     TextureContent content_;
+    std::uint64_t mostTexels_;
 };
 
 /// Opens `file` by its name, or as `format` if that is given.
 std::shared_ptr<const Texture> read(const std::string& file, const char* format, const std::string& name,
-                                    TextureContent content) {
+                                    TextureContent content, std::uint64_t mostTexels) {
     const QuietLibraries quiet;
     // Transparent pixels keep their colour as it stands in the file.
     OIIO::ImageSpec config;
@@ -217,7 +224,7 @@ std::shared_ptr<const Texture> read(const std::string& file, const char* format,
         if (!input->open(file, spec, config)) error = std::exchange(input, nullptr)->geterror();
     }
     if (!input) throw InputError(shortReason(error, file));
-    auto texture = Reading(*input, file, name, content).run();
+    auto texture = Reading(*input, file, name, content, mostTexels).run();
     input->close();
     return texture;
 }
@@ -245,13 +252,14 @@ float Texture::opacity(int x, int y) const {
     return floats_.empty() ? unitValue(bytes_[4 * index(x, y) + 3]) : floats_[index(x, y)].w;
 }
 
-std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content) {
+std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content,
+                                           std::uint64_t mostTexels) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
     if (std::filesystem::file_size(path, error) == 0) throw InputError("the file is empty");
     const std::string bytes = readInputFile(path);
     refuseHostileImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-    return read(path.string(), nullptr, path.filename().string(), content);
+    return read(path.string(), nullptr, path.filename().string(), content, mostTexels);
 }
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,
@@ -261,7 +269,7 @@ std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, 
     if (!jpeg && !start.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
     refuseHostileImage(bytes);
     const MemoryFile file(bytes);
-    return read(file.path(), jpeg ? "jpeg" : "png", name, content);
+    return read(file.path(), jpeg ? "jpeg" : "png", name, content, kMostTexels);
 }
 
 } // namespace lambert

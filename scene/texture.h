@@ -55,9 +55,13 @@ enum class TextureContent {
     Linear     //!< numbers taken as they are, such as metalness
 };
 
-/// Reads an image through OpenImageIO. Throws InputError with the file's name and one reason if it is missing, broken, of
-/// zero size, or larger than 2^28 texels.
-std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content);
+/// A plain square of 16,384 texels.
+inline constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
+
+/// Reads an image through OpenImageIO. Throws InputError with one reason if it is missing, broken, of zero size, or has more
+/// than `mostTexels`, a power of 2.
+std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content,
+                                           std::uint64_t mostTexels = kMostTexels);
 /// The same from a file's bytes in memory (PNG or JPEG, as inside glTF); `name` stands in messages. Throws SystemError if
 /// there is no memory for them.
 std::shared_ptr<const Texture> readTexture(std::span<const std::uint8_t> bytes, const std::string& name,

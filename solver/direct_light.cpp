@@ -3,110 +3,185 @@
 #include "solver/direct_light.h"
 
 #include "core/error.h"
+#include "core/orthonormal_basis.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/warps.h"
 #include "formfactors/patch_sampling.h"
+#include "scene/environment.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 namespace lambert {
 
 namespace {
 
 constexpr std::uint32_t kMostPoints = 65536;
+constexpr std::uint32_t kMostSkyRays = 1U << 24;
 constexpr float kNoEnd = 1e30F;
 
-/// Points of a surface that look for light, and where their rays start.
+/// A patch or a point that looks for light.
 struct Receiver {
     glm::vec3 normal;
     glm::vec3 offset; ///< from a point to the origin of its rays
-    std::vector<glm::vec3> points;
+    const PatchPoints* surface = nullptr;
+    glm::vec3 point{0.0F}; ///< without a surface
+
+    glm::vec3 at(const glm::dvec2& u) const { return surface != nullptr ? surface->at(u) : point; }
 };
 
-/// What a point receives if nothing stands between, and the ray that finds out.
-struct Candidate {
-    RgbSum irradiance{0.0};
-    glm::vec3 direction{0.0F};
-    float maxDistance = 0.0F; ///< in lengths of the direction
+/// A ray that finds out whether light arrives.
+struct ShadowRay {
+    glm::vec3 origin, direction;
+    float maxDistance = kNoEnd; ///< in lengths of the direction
+    RgbSum irradiance{0.0};     ///< what arrives if nothing stands between, where that is known beforehand
 };
 
-Candidate candidateOf(const PunctualLight& light, const Receiver& receiver, const glm::vec3& point, float endGap) {
-    const glm::vec3 n = receiver.normal;
-    if (light.kind == PunctualLight::Kind::Directional) {
-        const float cosine = glm::dot(n, -light.direction);
-        if (!(cosine > 0.0F)) return {};
-        return {static_cast<double>(cosine) * RgbSum(light.intensity), -light.direction, kNoEnd};
-    }
-    const glm::vec3 toLight = light.position - point;
-    const auto squared = static_cast<double>(glm::dot(toLight, toLight));
-    const auto distance = static_cast<float>(std::sqrt(squared));
-    const float height = glm::dot(n, toLight);
-    if (!(height > 0.0F) || !(distance > endGap)) return {};
-    const glm::vec3 direction = toLight / distance;
-    const RgbSum intensity(intensityToward(light, -direction));
-    return {intensity * (static_cast<double>(height / distance) / squared), toLight - receiver.offset,
-            1.0F - endGap / distance};
-}
-
-/// Collects shadow rays into packets and adds up what gets through.
+/// Collects rays into packets, and adds up `gain(ray)` of those that get through.
+template <typename Gain>
 class ShadowSum {
 public:
-    explicit ShadowSum(const RayCaster& rays) : rays_(rays) {}
+    ShadowSum(const RayCaster& rays, Gain gain) : rays_(rays), gain_(std::move(gain)) {}
 
-    void add(const glm::vec3& origin, const Candidate& candidate) {
-        if (candidate.irradiance == RgbSum(0.0)) return;
-        packet_.originX[count_] = origin.x;
-        packet_.originY[count_] = origin.y;
-        packet_.originZ[count_] = origin.z;
-        packet_.directionX[count_] = candidate.direction.x;
-        packet_.directionY[count_] = candidate.direction.y;
-        packet_.directionZ[count_] = candidate.direction.z;
-        packet_.maxDistance[count_] = candidate.maxDistance;
-        irradiance_[count_] = candidate.irradiance;
+    void add(const ShadowRay& ray) {
+        pending_[count_] = ray;
         if (++count_ == ShadowPacket::kSize) trace();
     }
 
     RgbSum finish() {
-        trace();
+        if (count_ > 0) trace();
         return sum_;
     }
 
 private:
     void trace() {
-        if (count_ == 0) return;
-        for (int lane = 0; lane < ShadowPacket::kSize; ++lane) packet_.active[lane] = lane < count_ ? -1 : 0;
-        for (int lane = count_; lane < ShadowPacket::kSize; ++lane) {
-            packet_.originX[lane] = packet_.originY[lane] = packet_.originZ[lane] = 0.0F;
-            packet_.directionX[lane] = packet_.directionY[lane] = packet_.directionZ[lane] = 1.0F;
-            packet_.maxDistance[lane] = 0.0F;
+        ShadowPacket packet;
+        for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
+            // Lanes past the end repeat the last ray, inactive.
+            const ShadowRay& ray = pending_[std::min(lane, count_ - 1)];
+            packet.originX[lane] = ray.origin.x;
+            packet.originY[lane] = ray.origin.y;
+            packet.originZ[lane] = ray.origin.z;
+            packet.directionX[lane] = ray.direction.x;
+            packet.directionY[lane] = ray.direction.y;
+            packet.directionZ[lane] = ray.direction.z;
+            packet.maxDistance[lane] = ray.maxDistance;
+            packet.active[lane] = lane < count_ ? -1 : 0;
         }
-        rays_.occluded(packet_);
+        rays_.occluded(packet);
         for (int lane = 0; lane < count_; ++lane)
-            if (!packet_.occluded[lane]) sum_ += irradiance_[lane];
+            if (!packet.occluded[lane]) sum_ += gain_(pending_[lane]);
         count_ = 0;
     }
 
     const RayCaster& rays_;
-    ShadowPacket packet_;
-    RgbSum irradiance_[ShadowPacket::kSize];
+    Gain gain_;
+    ShadowRay pending_[ShadowPacket::kSize];
     int count_ = 0;
     RgbSum sum_{0.0};
 };
 
-RgbSum gather(const RayCaster& rays, const Receiver& receiver, std::span<const PunctualLight> lights) {
-    const float endGap = rays.originOffset(0.0F); // a light in a ceiling's plane is not behind it
-    ShadowSum sum(rays);
+/// The ray from a point to a light, if light could come along it. It ends `endGap` (metres) before the light: one in a
+/// ceiling's plane is not behind it, nor does it graze it.
+std::optional<ShadowRay> rayTo(const PunctualLight& light, const Receiver& receiver, const glm::vec3& point,
+                               float endGap) {
+    const glm::vec3 origin = point + receiver.offset;
+    if (light.kind == PunctualLight::Kind::Directional) {
+        const float cosine = glm::dot(receiver.normal, -light.direction);
+        if (!(cosine > 0.0F)) return std::nullopt;
+        return ShadowRay{origin, -light.direction, kNoEnd, static_cast<double>(cosine) * RgbSum(light.intensity)};
+    }
+    const glm::vec3 toLight = light.position - point;
+    const float height = glm::dot(receiver.normal, toLight);
+    const float distance = glm::length(toLight);
+    if (!(height > endGap)) return std::nullopt;
+    const RgbSum intensity(intensityToward(light, -toLight / distance));
+    if (intensity == RgbSum(0.0)) return std::nullopt;
+    const auto d = static_cast<double>(distance);
+    return ShadowRay{origin, toLight - receiver.offset, 1.0F - endGap / distance,
+                     intensity * (static_cast<double>(height) / (d * d * d))};
+}
+
+RgbSum fromPunctual(const RayCaster& rays, const Receiver& receiver, const SamplePoints& samples,
+                    std::span<const PunctualLight> lights) {
+    const float endGap = rays.originOffset(0.0F);
+    std::vector<glm::vec3> points(samples.count());
+    for (std::uint32_t k = 0; k < samples.count(); ++k) points[k] = receiver.at({samples.at(k, 0), samples.at(k, 1)});
+    ShadowSum sum(rays, [](const ShadowRay& ray) { return ray.irradiance; });
     for (const PunctualLight& light : lights)
-        for (const glm::vec3& point : receiver.points)
-            sum.add(point + receiver.offset, candidateOf(light, receiver, point, endGap));
-    return sum.finish() / static_cast<double>(receiver.points.size());
+        for (const glm::vec3& point : points)
+            if (const auto ray = rayTo(light, receiver, point, endGap)) sum.add(*ray);
+    return sum.finish() / static_cast<double>(points.size());
+}
+
+/// Both sets of rays count by the balance heuristic (E. Veach, L. Guibas, SIGGRAPH 1995): whichever set a direction ω comes
+/// from, it is worth L cosθ / (N_cos cosθ/π + N_map p(ω)).
+class EnvironmentRays {
+public:
+    EnvironmentRays(const Environment& environment, std::uint32_t count)
+        : environment_(environment),
+          byMap_(environment.distribution() != nullptr ? count / 2 : 0),
+          byCosine_(count - byMap_) {}
+
+    RgbSum gather(const RayCaster& rays, const Receiver& receiver, Sampler sampler, std::uint64_t seed) const {
+        const OrthonormalBasis frame(receiver.normal);
+        ShadowSum sum(rays, [&](const ShadowRay& ray) { return worth(ray.direction, receiver.normal); });
+        const auto add = [&](const glm::vec3& direction, const glm::dvec2& place) {
+            sum.add({receiver.at(place) + receiver.offset, direction});
+        };
+        const SamplePoints cosine(sampler, byCosine_, 4, seed);
+        for (std::uint32_t k = 0; k < byCosine_; ++k) {
+            const glm::vec3 local(cosineHemisphere({cosine.at(k, 0), cosine.at(k, 1)}));
+            add(local.x * frame.x + local.y * frame.y + local.z * frame.z, {cosine.at(k, 2), cosine.at(k, 3)});
+        }
+        if (byMap_ == 0) return sum.finish();
+        const SamplePoints map(sampler, byMap_, 4, ~seed);
+        for (std::uint32_t k = 0; k < byMap_; ++k) {
+            const glm::vec3 direction(environment_.distribution()->sample({map.at(k, 0), map.at(k, 1)}).direction);
+            if (glm::dot(direction, receiver.normal) > 0.0F) add(direction, {map.at(k, 2), map.at(k, 3)});
+        }
+        return sum.finish();
+    }
+
+private:
+    RgbSum worth(const glm::vec3& direction, const glm::vec3& normal) const {
+        const glm::dvec3 d = glm::normalize(glm::dvec3(direction));
+        const double cosine = std::max(0.0, glm::dot(d, glm::dvec3(normal)));
+        const double density = byCosine_ * cosine / std::numbers::pi +
+                               (byMap_ > 0 ? byMap_ * environment_.distribution()->density(d) : 0.0);
+        return density > 0.0 ? RgbSum(environment_.radiance(d)) * (cosine / density) : RgbSum(0.0);
+    }
+
+    const Environment& environment_;
+    std::uint32_t byMap_, byCosine_;
+};
+
+RgbSum gather(const RayCaster& rays, const DirectLightOptions& options, const Receiver& receiver, std::uint32_t points,
+              std::uint64_t seed, const LightSources& sources) {
+    RgbSum sum(0.0);
+    if (!sources.lights.empty())
+        sum += fromPunctual(rays, receiver, {options.sampler, points, 2, seed}, sources.lights);
+    if (sources.environment != nullptr)
+        sum += EnvironmentRays(*sources.environment, options.skyRays).gather(rays, receiver, options.sampler, seed + 1);
+    return sum;
+}
+
+/// Of one patch or point; `kind` tells these apart.
+std::uint64_t seedOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
+    const auto key = philox({index, 0, 0, kind}, seed);
+    return (std::uint64_t{key[0]} << 32) | key[1];
 }
 
 } // namespace
+
+LightSources lightsOf(const Scene& scene) { return {scene.lights, scene.environment.get()}; }
 
 Rgb intensityToward(const PunctualLight& light, const glm::vec3& direction) {
     if (light.kind != PunctualLight::Kind::Spot) return light.intensity;
@@ -118,27 +193,20 @@ Rgb intensityToward(const PunctualLight& light, const glm::vec3& direction) {
 }
 
 DirectLight::DirectLight(const RayCaster& rays, const DirectLightOptions& options) : rays_(rays), options_(options) {
-    if (options.points < 1 || options.points > kMostPoints)
-        throw UsageError(fmt::format("light points: found {}, allowed are 1 to {}", options.points, kMostPoints));
+    checkDirectLight(options);
 }
 
-std::vector<RgbSum> DirectLight::irradiance(const PatchMesh& mesh, std::span<const PunctualLight> lights,
+std::vector<RgbSum> DirectLight::irradiance(const PatchMesh& mesh, const LightSources& sources,
                                             Progress& progress) const {
     std::vector<RgbSum> result(mesh.size(), RgbSum(0.0));
-    if (lights.empty()) return result;
+    if (sources.empty()) return result;
     progress.begin("direct light", mesh.size());
     parallelFor(mesh.size(), 64, [&](std::size_t begin, std::size_t end, int) {
-        Receiver receiver;
         for (std::size_t patch = begin; patch < end; ++patch) {
-            const auto key = philox({static_cast<std::uint32_t>(patch), 0, 0, 0x4C494748}, options_.seed);
-            const SamplePoints samples(options_.sampler, options_.points, 2, (std::uint64_t{key[0]} << 32) | key[1]);
             const PatchPoints surface(mesh, patch);
-            receiver.normal = mesh.normal[patch];
-            receiver.offset = rays_.originOffset(std::sqrt(mesh.area[patch])) * receiver.normal;
-            receiver.points.clear();
-            for (std::uint32_t k = 0; k < options_.points; ++k)
-                receiver.points.push_back(surface.at({samples.at(k, 0), samples.at(k, 1)}));
-            result[patch] = gather(rays_, receiver, lights);
+            const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh.area[patch])) * mesh.normal[patch];
+            result[patch] = gather(rays_, options_, {mesh.normal[patch], offset, &surface}, options_.points,
+                                   seedOf(static_cast<std::uint32_t>(patch), 0x4C494748, options_.seed), sources);
         }
         progress.advance(end - begin);
     });
@@ -146,13 +214,17 @@ std::vector<RgbSum> DirectLight::irradiance(const PatchMesh& mesh, std::span<con
     return result;
 }
 
-RgbSum DirectLight::irradiance(const glm::vec3& point, const glm::vec3& normal,
-                               std::span<const PunctualLight> lights) const {
-    return gather(rays_, {normal, rays_.originOffset(0.0F) * normal, {point}}, lights);
+RgbSum DirectLight::irradiance(const glm::vec3& point, const glm::vec3& normal, std::uint32_t index,
+                               const LightSources& sources) const {
+    return gather(rays_, options_, {normal, rays_.originOffset(0.0F) * normal, nullptr, point}, 1,
+                  seedOf(index, 0x50544C54, options_.seed), sources);
 }
 
-std::uint64_t DirectLight::rayCount(std::size_t patches, std::size_t lights) const {
-    return std::uint64_t{patches} * lights * options_.points;
+void checkDirectLight(const DirectLightOptions& o) {
+    if (o.points < 1 || o.points > kMostPoints)
+        throw UsageError(fmt::format("--light-points: found {}, allowed are 1 to {}", o.points, kMostPoints));
+    if (o.skyRays < 2 || o.skyRays > kMostSkyRays)
+        throw UsageError(fmt::format("--sky-rays: found {}, allowed are 2 to {}", o.skyRays, kMostSkyRays));
 }
 
 } // namespace lambert

@@ -1,3 +1,4 @@
+#include "core/random.h"
 #include "scene/example_scenes.h"
 #include "scene/ray_caster.h"
 
@@ -98,6 +99,37 @@ TEST_F(Sheets, WithoutTextureCoordinatesHaveNoHoles) {
     for (Polygon& polygon : scene.polygons) polygon.surface = kNone;
     const RayCaster caster(scene);
     EXPECT_EQ(caster.closest({{0.3F, 0.1F, 1.5F}, {0, 0, -1}})->polygon, 1U);
+}
+
+TEST_F(Sheets, APacketOfShadowRaysFindsWhatSingleRaysFind) {
+    const RayCaster caster(scene);
+    int free = 0;
+    for (int k = 0; k < 200; ++k) {
+        ShadowPacket packet;
+        Ray rays[ShadowPacket::kSize];
+        for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
+            const auto bits = philox({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(lane), 0, 0}, 1);
+            Ray& ray = rays[lane];
+            ray.origin = {uniformFloat(bits[0]), uniformFloat(bits[1]), 0.1F};
+            ray.direction = {uniformFloat(bits[2]) - 0.5F, 0.3F, 1.0F};
+            ray.maxDistance = 3.0F * uniformFloat(bits[3]);
+            packet.originX[lane] = ray.origin.x;
+            packet.originY[lane] = ray.origin.y;
+            packet.originZ[lane] = ray.origin.z;
+            packet.directionX[lane] = ray.direction.x;
+            packet.directionY[lane] = ray.direction.y;
+            packet.directionZ[lane] = ray.direction.z;
+            packet.maxDistance[lane] = ray.maxDistance;
+            packet.active[lane] = lane == 3 ? 0 : -1;
+        }
+        caster.occluded(packet);
+        for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
+            EXPECT_EQ(packet.occluded[lane], lane != 3 && caster.occluded(rays[lane]));
+            free += packet.occluded[lane] ? 0 : 1;
+        }
+    }
+    EXPECT_GT(free, 400);
+    EXPECT_LT(free, 2800); // both answers occur
 }
 
 } // namespace

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "baking/light_groups.h"
+#include "baking/mesh_scene.h"
+#include "baking/reconstruction.h"
+#include "solver/solver.h"
+
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// What one group of lights alone brings, at the vertices of the baked mesh. By linearity, all groups add up to the whole, and
+/// any of them may be dimmed (or coloured, per channel) by a factor on its radiosity and irradiance.
+struct BakedLight {
+    LightGroup group;
+    EnergyBalance energy;
+    std::int64_t iterations = 0;
+    double residual = 0.0;
+    std::vector<Rgb> radiosity, irradiance; //!< #vertices, per m²
+    std::vector<bool> emitters;             //!< #faces, as BakedMesh::emitters
+};
+
+/// The mesh as this group alone lights it. `mesh` is the one that the whole was baked to.
+BakedMesh withLight(BakedMesh mesh, const BakedLight& light);
+
+struct PerLightOptions {
+    DirectLightOptions directLight;
+    SolverOptions solver;
+    ReconstructionOptions reconstruction;
+};
+
+/// Solves for every group of lights of the scene on the same rows. While this runs the mesh emits only what a group does;
+/// afterwards it is as before. Throws Cancelled.
+std::vector<BakedLight> bakePerLight(MeshedScene& scene, FormFactorRows& rows, const PerLightOptions& options,
+                                     Progress& progress);
+
+} // namespace lambert
