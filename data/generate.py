@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from polygon_files import write_ply, write_stl
-from scene_files import (Camera, Image, Mapping, Material, Node, Scene, rounded, write_gltf, write_mgf,
+from scene_files import (Camera, Image, Light, Mapping, Material, Node, Scene, rounded, write_gltf, write_mgf,
                          write_obj)
 
 WRITERS = {"gltf": write_gltf, "obj": write_obj, "ply": write_ply, "stl": write_stl, "mgf": write_mgf}
@@ -293,11 +293,46 @@ def textured_room():
                  Camera((.3, 1.9, 2.85), (1.75, .85, 1.05), math.radians(62), 1.333333), textured_images())
 
 
+# ---- A room for daylight
+
+def window_room():
+    width, height, depth = 4, 2.8, 5
+    left, right, sill, top, outside = .8, 3.2, .8, 2.3, depth + .3
+    names = {"x0": "wall_west", "x1": "wall_east", "y0": "floor", "y1": "ceiling"}
+    room = box((0, 0, 0), (width, height, depth), lambda side: names.get(side, "wall"), inward=True)[:5]
+
+    def facing_north(x0, x1, y0, y1):
+        return ("wall", [(x1, y0, depth), (x0, y0, depth), (x0, y1, depth), (x1, y1, depth)])
+    room += [facing_north(0, left, 0, height), facing_north(right, width, 0, height),
+             facing_north(left, right, 0, sill), facing_north(left, right, top, height)]
+    reveal = box((left, sill, depth), (right, top, outside), "reveal", inward=True)[:4]
+    materials = {
+        "floor": Material((.45, .33, .22)), "ceiling": Material((.82, .82, .8)), "wall": Material((.7, .69, .66)),
+        "wall_west": Material((.62, .3, .22)), "wall_east": Material((.25, .42, .55)), "reveal": Material((.8, .8, .8)),
+        "table": Material((.5, .34, .2)), "box": Material((.6, .6, .58)), "panel": Material((.7, .7, .7), (500, 450, 350))}
+    meshes = {
+        "room": [room + reveal],
+        "table": [box((-.7, .71, -.4), (.7, .75, .4), "table"), *legs(.66, .36, .06, .71, "table")],
+        "box": [box((-.25, 0, -.25), (.25, .5, .25), "box")],
+        "panel": [box((-.3, -.04, -.3), (.3, 0, .3), lambda side: "panel" if side == "y0" else "box")]}
+    nodes = [Node("room", "room"), Node("table", "table", (1.6, 0, 3.1), 8.3), Node("box", "box", (3.2, 0, 1.1), 21.7),
+             Node("panel", "panel", (2, height, 1.2))]
+    cones = (.35, .6)
+    lights = [Light("bulb", "point", 60, (1, .85, .6), (.9, 1.3, .8)),
+              Light("spot", "spot", 400, (1, .95, .9), (.7, 2.7, 2), (-.6, -1, 0), cones),
+              Light("spot", "spot", 400, (1, .95, .9), (.7, 2.7, 3.4), (-.6, -1, 0), cones)]
+    return Scene("window_room",
+                 ["Metres; north is -z, east +x. A room with a window to the south and no pane in it, a table, a box, a",
+                  "panel under the ceiling, and lights without area: a bulb and two spots of one name."],
+                 materials, meshes, nodes, Camera((.35, 1.75, .3), (2.3, .9, 3.6), math.radians(62), 1.333333),
+                 lights=lights)
+
+
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
     return [(cornell_box(), (*both, "mgf")), (furnace_box(), (*both, "ply", "stl")), (table_room(), (*both, "mgf")),
-            (textured_room(), both),
+            (textured_room(), both), (window_room(), ("gltf",)),
             *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
 
 

@@ -48,6 +48,17 @@ class Camera(NamedTuple):
     aspect: float
 
 
+class Light(NamedTuple):
+    """A light without area, which only glTF knows. Several of one name are one light at several places."""
+    name: str
+    kind: str               # point or spot
+    intensity: float        # candela
+    colour: tuple
+    position: tuple
+    direction: tuple = (0, -1, 0)
+    cones: tuple = (0, 0)   # half angles, radians: full light inside the first, none outside the second
+
+
 class Scene(NamedTuple):
     name: str
     comment: list           # lines
@@ -56,6 +67,7 @@ class Scene(NamedTuple):
     nodes: list
     camera: Camera = None
     images: dict = {}       # name -> Image
+    lights: list = []
 
 
 def rounded(x):
@@ -202,7 +214,7 @@ def gltf_material(name, material, images):
         "baseColorFactor": [*material.kd, 1], "metallicFactor": 0, "roughnessFactor": 1}}
     brightest = max(material.ke)
     if brightest > 0:  # emissiveFactor ends at 1; a round strength keeps it short
-        strength = next(s for s in (1, 2, 5, 10, 20, 50, 100) if s >= brightest)
+        strength = next(s for s in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if s >= brightest)
         entry["emissiveFactor"] = [float(number(k / strength)) for k in material.ke]
         if strength > 1:
             entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
@@ -215,12 +227,33 @@ def gltf_material(name, material, images):
     return entry
 
 
+def gltf_rotation(direction):
+    """Turns -z to the direction."""
+    dx, dy, dz = direction
+    yaw = math.atan2(-dx, -dz) / 2 if dx or dz else 0
+    pitch = math.atan2(dy, math.hypot(dx, dz)) / 2
+    return [rounded(q) for q in (math.cos(yaw) * math.sin(pitch), math.sin(yaw) * math.cos(pitch),
+                                 -math.sin(yaw) * math.sin(pitch), math.cos(yaw) * math.cos(pitch))]
+
+
 def gltf_camera_node(camera):
-    dx, dy, dz = (b - a for a, b in zip(camera.eye, camera.look_at))
-    yaw, pitch = math.atan2(-dx, -dz) / 2, math.atan2(dy, math.hypot(dx, dz)) / 2
-    rotation = (math.cos(yaw) * math.sin(pitch), math.sin(yaw) * math.cos(pitch),
-                -math.sin(yaw) * math.sin(pitch), math.cos(yaw) * math.cos(pitch))
-    return {"name": "camera", "camera": 0, "translation": list(camera.eye), "rotation": [rounded(q) for q in rotation]}
+    rotation = gltf_rotation(b - a for a, b in zip(camera.eye, camera.look_at))
+    return {"name": "camera", "camera": 0, "translation": list(camera.eye), "rotation": rotation}
+
+
+def gltf_lights(lights):
+    """What the lights' extension holds, and the nodes that show them."""
+    definitions, nodes = {}, []
+    for light in lights:
+        entry = {"name": light.name, "type": light.kind, "color": list(light.colour), "intensity": light.intensity}
+        if light.kind == "spot":
+            entry["spot"] = {"innerConeAngle": rounded(light.cones[0]), "outerConeAngle": rounded(light.cones[1])}
+        definitions[light.name] = entry
+        node = {"name": light.name, "translation": list(light.position)}
+        if light.kind == "spot":
+            node["rotation"] = gltf_rotation(light.direction)
+        nodes.append(node | {"extensions": {"KHR_lights_punctual": {"light": list(definitions).index(light.name)}}})
+    return list(definitions.values()), nodes
 
 
 def write_gltf(scene, folder):
@@ -265,8 +298,14 @@ def write_gltf(scene, folder):
         nodes.append(entry)
     gltf = {"asset": {"version": "2.0", "generator": "Lambert, data/generate.py", "extras": {"comment": scene.comment}}}
     gltf_materials = [gltf_material(name, material, list(scene.images)) for name, material in scene.materials.items()]
-    if any("extensions" in material for material in gltf_materials):
-        gltf["extensionsUsed"] = ["KHR_materials_emissive_strength"]
+    used = ["KHR_materials_emissive_strength"] if any("extensions" in m for m in gltf_materials) else []
+    if scene.lights:
+        used.append("KHR_lights_punctual")
+        definitions, light_nodes = gltf_lights(scene.lights)
+        nodes += light_nodes
+        gltf["extensions"] = {"KHR_lights_punctual": {"lights": definitions}}
+    if used:
+        gltf["extensionsUsed"] = used
     if scene.camera:
         nodes.append(gltf_camera_node(scene.camera))
         gltf["cameras"] = [{"name": "camera", "type": "perspective", "perspective": {

@@ -132,7 +132,7 @@ class Files(unittest.TestCase):
 
     def test_gltf_and_obj_hold_the_same_surfaces(self):
         for scene, formats in generate.scenes():
-            if "gltf" not in formats:
+            if not {"gltf", "obj"} <= set(formats):
                 continue
             found = []
             for faces in (read_obj(FOLDER / f"{scene.name}.obj"), read_gltf(FOLDER / f"{scene.name}.gltf")):
@@ -149,6 +149,24 @@ class Files(unittest.TestCase):
             for material in scene.materials:
                 for a, b in zip(found[0][material], found[1][material]):
                     self.assertAlmostEqual(a, b, delta=1e-5, msg=f"{scene.name} {material}")  # glTF: single precision
+
+
+class Lights(unittest.TestCase):
+    def test_stand_where_the_scene_has_them_and_spots_look_along_their_direction(self):
+        scene = SCENES["window_room"]
+        gltf = json.loads((FOLDER / "window_room.gltf").read_text())
+        definitions = gltf["extensions"]["KHR_lights_punctual"]["lights"]
+        nodes = [node for node in gltf["nodes"] if "extensions" in node]
+        self.assertEqual([light["name"] for light in definitions], ["bulb", "spot"])
+        self.assertEqual(len(nodes), len(scene.lights))
+        for light, node in zip(scene.lights, nodes):
+            definition = definitions[node["extensions"]["KHR_lights_punctual"]["light"]]
+            self.assertEqual((definition["name"], definition["type"], definition["intensity"]), light[:3])
+            self.assertEqual(tuple(node["translation"]), light.position)
+            if light.kind == "spot":
+                looking = turned(node["rotation"], (0, 0, -1))
+                for a, b in zip(looking, light.direction):
+                    self.assertAlmostEqual(a, b / length(light.direction), delta=1e-7)
 
 
 class MgfColours(unittest.TestCase):
