@@ -25,11 +25,11 @@ struct BacksMet {
 };
 
 /// The material whose black back is met most by rays from the patches that meet most of them.
-BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFactorRows& rows) {
+BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> covered) {
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const auto loss = [&](std::uint32_t patch) {
-        const double back = rows.back(patch);
+        const double back = covered[patch];
         return back <= kCovered ? static_cast<double>(mesh.area[patch]) * back : 0.0;
     };
     std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
@@ -63,32 +63,51 @@ BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, const FormFac
     return {scene.materials[static_cast<std::size_t>(most - met.begin())].name, onBacks / (onBacks + occluded)};
 }
 
-/// How much of the rays meets backs. The rows must know all back().
-void assessBacks(const PatchMesh& mesh, const RayCaster& rays, const FormFactorRows& rows, RowQuality& quality) {
+/// How much of the rays meets backs; `covered` is RadiositySolution::covered.
+void assessBacks(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> covered, RowQuality& quality) {
     double receivingArea = 0.0;
     double backArea = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const double back = rows.back(static_cast<std::uint32_t>(i));
+        const double back = covered[i];
         if (back > kCovered) continue;
         receivingArea += static_cast<double>(mesh.area[i]);
         backArea += static_cast<double>(mesh.area[i]) * back;
     }
     quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
     if (quality.backFaceFraction > kBackFaceWarning) {
-        const BacksMet met = mostMetBack(mesh, rays, rows);
+        const BacksMet met = mostMetBack(mesh, rays, covered);
         quality.backFaceFraction *= met.unwanted;
         quality.backFaceMaterial = met.material;
     }
+}
+
+void bakeLights(const BakeOptions& options, const LightSolver& solver, BakedScene& result, Progress& progress) {
+    if (options.perLight)
+        result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction}, progress);
 }
 
 /// The whole and, if wanted, each group of lights.
 void solveFor(const BakeOptions& options, const SolverProblem& problem, FormFactorRows& rows, BakedScene& result,
               Progress& progress) {
     result.solution = solve(problem, rows, options.solver, progress);
-    if (!options.perLight) return;
     SolverOptions solver = options.solver;
     solver.keepBounces = false;
-    result.lights = bakePerLight(result, rows, {options.directLight, solver, options.reconstruction}, progress);
+    bakeLights(
+        options, [&](const SolverProblem& light) { return solve(light, rows, solver, progress); }, result, progress);
+}
+
+/// Without form factors.
+void solveWithLines(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+    Stopwatch watch;
+    const auto run = [&](const SolverProblem& light) {
+        StochasticSolution solution = solveByLines(light, *result.rays, options.lineSolver, progress);
+        result.rayCount += solution.rays;
+        return solution;
+    };
+    result.stochastic = run(problem);
+    result.solution = std::move(static_cast<RadiositySolution&>(*result.stochastic));
+    bakeLights(options, run, result, progress);
+    result.seconds.solve = watch.lap();
 }
 
 /// The matrix first, then the light.
@@ -101,7 +120,6 @@ void solveStored(const BakeOptions& options, const SolverProblem& problem, Baked
     result.journal = std::move(obtained.journal);
     result.rayCount = result.plan ? result.plan->rays : 0;
     StoredRows rows(matrix);
-    assessBacks(result.mesh, *result.rays, rows, result.rows);
     for (std::size_t i = 0; i < matrix.size(); ++i)
         result.rows.largestClosureError =
             std::max(result.rows.largestClosureError, std::abs(matrix.row(i).sum() - 1.0));
@@ -121,7 +139,6 @@ void solveComputed(const BakeOptions& options, const SolverProblem& problem, Bak
     solveFor(options, problem, rows, result, progress);
     result.rayCount = rows.rowsComputed() * method->raysPerRow();
     result.rows.largestClosureError = rows.largestClosureError();
-    assessBacks(result.mesh, *result.rays, rows, result.rows);
     result.seconds.solve = watch.lap();
 }
 
@@ -150,7 +167,11 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
         result.mesh,
         DirectLight(*result.rays, options.directLight).irradiance(result.mesh, lightsOf(*result.scene), progress));
     result.seconds.directLight = watch.lap();
-    (options.formFactors.transport.stored ? solveStored : solveComputed)(options, problem, result, progress);
+    const auto solveBy = usesLines(options.solver.method)       ? solveWithLines
+                         : options.formFactors.transport.stored ? solveStored
+                                                                : solveComputed;
+    solveBy(options, problem, result, progress);
+    assessBacks(result.mesh, *result.rays, result.solution.covered, result.rows);
     watch.lap();
 
     progress.begin("bake", 0);

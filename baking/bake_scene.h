@@ -5,6 +5,7 @@
 #include "baking/reconstruction.h"
 #include "formfactors/matrix_source.h"
 #include "solver/direct_light.h"
+#include "solver/line_solvers.h"
 #include "solver/solver.h"
 
 #include <memory>
@@ -20,6 +21,7 @@ struct BakeOptions {
     MatrixSource formFactors;
     DirectLightOptions directLight;
     SolverOptions solver;
+    LineSolverOptions lineSolver; //!< where solver.method usesLines(): instead of form factors
     ReconstructionOptions reconstruction;
     bool perLight = false; //!< each group of lights on its own as well, see bakePerLight
 };
@@ -42,10 +44,12 @@ struct RowQuality {
 /// A scene with its light, and what a caller may want to know of how it came about.
 struct BakedScene : MeshedScene {
     RadiositySolution solution{};
+    /// What a solver by lines knows beyond the solution, which is moved out of it.
+    std::optional<StochasticSolution> stochastic{};
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
-    std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file
+    std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file, or not used
     std::optional<RepairReport> repair{};     //!< of the form factors; none: not repaired
     std::unique_ptr<MatrixJournal> journal{}; //!< see SceneMatrix
     std::uint64_t rayCount = 0;               //!< of the form factors

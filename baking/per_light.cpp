@@ -37,14 +37,13 @@ RadiositySolution darkness(std::size_t patches) {
     return solution;
 }
 
-BakedLight bakeGroup(MeshedScene& scene, LightGroup group, FormFactorRows& rows, const PerLightOptions& o,
+BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& solver, const PerLightOptions& o,
                      Progress& progress) {
     const OtherEmission emission(scene.mesh, emittedBy(group, scene.mesh));
     std::vector<RgbSum> direct =
         DirectLight(*scene.rays, o.directLight).irradiance(scene.mesh, sourcesOf(group, *scene.scene), progress);
     const RadiositySolution solution =
-        isDark(scene.mesh, direct) ? darkness(scene.mesh.size())
-                                   : solve(SolverProblem(scene.mesh, std::move(direct)), rows, o.solver, progress);
+        isDark(scene.mesh, direct) ? darkness(scene.mesh.size()) : solver(SolverProblem(scene.mesh, std::move(direct)));
     BakedMesh baked = reconstructAverage(scene.mesh, *scene.scene, solution, o.reconstruction);
     return {std::move(group),           solution.energy,
             solution.iterations,        solution.residual,
@@ -61,11 +60,11 @@ BakedMesh withLight(BakedMesh mesh, const BakedLight& light) {
     return mesh;
 }
 
-std::vector<BakedLight> bakePerLight(MeshedScene& scene, FormFactorRows& rows, const PerLightOptions& options,
+std::vector<BakedLight> bakePerLight(MeshedScene& scene, const LightSolver& solver, const PerLightOptions& options,
                                      Progress& progress) {
     std::vector<BakedLight> lights;
     for (LightGroup& group : lightGroups(*scene.scene, scene.mesh))
-        lights.push_back(bakeGroup(scene, std::move(group), rows, options, progress));
+        lights.push_back(bakeGroup(scene, std::move(group), solver, options, progress));
     return lights;
 }
 

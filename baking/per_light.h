@@ -3,8 +3,10 @@
 #include "baking/light_groups.h"
 #include "baking/mesh_scene.h"
 #include "baking/reconstruction.h"
-#include "solver/solver.h"
+#include "solver/problem.h"
+#include "solver/solution.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,13 +28,15 @@ BakedMesh withLight(BakedMesh mesh, const BakedLight& light);
 
 struct PerLightOptions {
     DirectLightOptions directLight;
-    SolverOptions solver;
     ReconstructionOptions reconstruction;
 };
 
-/// Solves for every group of lights of the scene on the same rows. While this runs the mesh emits only what a group does;
+/// Solves one problem on the mesh of a scene.
+using LightSolver = std::function<RadiositySolution(const SolverProblem& problem)>;
+
+/// Solves for every group of lights of the scene. While this runs the mesh emits only what a group does;
 /// afterwards it is as before. Throws Cancelled.
-std::vector<BakedLight> bakePerLight(MeshedScene& scene, FormFactorRows& rows, const PerLightOptions& options,
+std::vector<BakedLight> bakePerLight(MeshedScene& scene, const LightSolver& solver, const PerLightOptions& options,
                                      Progress& progress);
 
 } // namespace lambert

@@ -81,6 +81,9 @@ double predictPasses(double reflected, const SolverOptions& options) {
     case SolverMethod::ConjugateGradient:
         // As the theory has it but for the factor, which is measured.
         return 3.0 + 0.3 * std::log(2.0 / options.tolerance) / std::sqrt(1.0 - share);
+    case SolverMethod::Stochastic:
+    case SolverMethod::RandomWalk:
+        break;
     }
     return jacobi;
 }
@@ -95,6 +98,8 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     result.patches = meshed.mesh.size();
     if (!options.formFactors.file.empty())
         throw UsageError("--dry-run: predicts nothing of a bake from a matrix file (--form-factors)");
+    if (usesLines(options.solver.method))
+        throw UsageError(fmt::format("--dry-run: predicts nothing of the solver {}", nameOf(options.solver.method)));
     result.plan = planTransport(options.formFactors.transport, meshed.mesh, *meshed.rays, progress);
     if (!hasRows(result.plan.options.method))
         throw UsageError(fmt::format("--dry-run: predicts nothing of {}", nameOf(result.plan.options.method)));

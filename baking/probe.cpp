@@ -78,6 +78,8 @@ std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, std::span<con
             const glm::vec3 normal = glm::normalize(points[i].normal);
             const auto surface = nearestFront(scene, points[i].position, normal, reach);
             readings[i].onSurface = surface.has_value();
+            if (surface && scene.stochastic)
+                readings[i].standardError = RgbSum(scene.stochastic->standardError[surface->patch]);
             readings[i].irradiance = surface ? interpolate(scene, *surface)
                                              : gather(scene, lights, hemicube, points[i], static_cast<std::uint32_t>(i),
                                                       normal, accumulators[static_cast<std::size_t>(worker)]);

@@ -136,10 +136,13 @@ MeshOptions meshOptions(const TransportArguments& a) {
 BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
     options.mesh = meshOptions(a);
-    options.formFactors = matrixSource(a, run);
     checkLights(a.light);
     options.directLight = {.points = a.light.points, .skyRays = a.light.skyRays, .seed = run.seed};
     options.solver = solverOptions(a);
+    if (usesLines(options.solver.method))
+        options.lineSolver = lineSolverOptions(a, run);
+    else
+        options.formFactors = matrixSource(a, run);
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
 }

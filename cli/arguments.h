@@ -43,6 +43,8 @@ struct TransportArguments {
     // Solution; see cli/solver_arguments.cpp
     std::optional<std::string> solver;
     std::optional<double> tolerance, relaxation;
+    std::optional<double> rays; //!< of the solvers without form factors
+    std::optional<double> targetError;
     int bounces = 0;
     bool keepBounces = false;
 };
@@ -84,11 +86,14 @@ void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< a
 MeshOptions meshOptions(const TransportArguments& arguments);
 MatrixSource matrixSource(const TransportArguments& arguments, const RunArguments& run);
 SolverOptions solverOptions(const TransportArguments& arguments);
+/// For a solver that usesLines(): throws UsageError also for options of form factors.
+LineSolverOptions lineSolverOptions(const TransportArguments& arguments, const RunArguments& run);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
 
 /// For reports: the options in force, and what a repair had to change (null: none was asked for).
 nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan);
 nlohmann::ordered_json solverOptionsJson(const SolverOptions& options);
+nlohmann::ordered_json lineSolverOptionsJson(const LineSolverOptions& options);
 std::string repairText(const RepairReport& repair); ///< one line
 nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair);
 

@@ -53,17 +53,48 @@ Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Pictu
     return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);
 }
 
+std::string solverText(const BakedScene& baked) {
+    if (baked.stochastic)
+        return fmt::format("{:.3g} rays in {} runs, standard error {:.2g} %",
+                           static_cast<double>(baked.stochastic->rays), baked.stochastic->subRuns,
+                           100.0 * baked.stochastic->relativeError);
+    return fmt::format("{} iterations, residual {:.2g}", baked.solution.iterations, baked.solution.residual);
+}
+
+/// Which form factors, and how many rays they took.
+std::string transportText(const BakeArguments& a, const BakedScene& baked) {
+    if (baked.stochastic) return a.transport.method.value_or("local-lines");
+    return fmt::format("{}: {:.3g} rays",
+                       baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
+                       static_cast<double>(baked.rayCount));
+}
+
+/// Says what the solver did not reach, and returns whether it reached all.
+bool checkTarget(const BakeOptions& options, const BakedScene& baked, SceneLog& log) {
+    if (baked.stochastic) {
+        if (baked.stochastic->targetReached) return true;
+        log.warning(fmt::format("--target-error: {:.2g} is reached, with what is not known of it {:.2g}, after all of "
+                                "{:.3g} rays",
+                                baked.stochastic->relativeError, baked.stochastic->upperRelativeError,
+                                static_cast<double>(baked.stochastic->rays)));
+        return false;
+    }
+    double residual = baked.solution.residual;
+    for (const BakedLight& light : baked.lights) residual = std::max(residual, light.residual);
+    if (residual <= options.solver.tolerance || options.solver.bounces > 0) return true;
+    log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", residual, options.solver.tolerance));
+    return false;
+}
+
 std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
     std::string text = fmt::format("{:<20} {:>10} {:>11} {:>11} {:>11}   mean irradiance (r g b)\n", "material",
                                    "area m²", "", "", "");
     for (const MaterialLight& light : materialLight(baked))
         text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
                             light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
-    return text +
-           fmt::format("{} patches, {} iterations, residual {:.2g}, energy imbalance {:.2g}, exposure {:.2f} EV, "
-                       "{:.1f} s\n",
-                       baked.mesh.size(), baked.solution.iterations, baked.solution.residual,
-                       baked.solution.energy.imbalance(), exposure, seconds);
+    return text + fmt::format("{} patches, {}, energy imbalance {:.2g}, exposure {:.2f} EV, {:.1f} s\n",
+                              baked.mesh.size(), solverText(baked), baked.solution.energy.imbalance(), exposure,
+                              seconds);
 }
 
 PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
@@ -144,10 +175,8 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) log.warning(warning);
-    log.line(fmt::format("{} patches, {}: {:.3g} rays; {}: {} iterations to {:.1e}", baked.mesh.size(),
-                         baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
-                         static_cast<double>(baked.rayCount), nameOf(options.solver.method), baked.solution.iterations,
-                         baked.solution.residual),
+    log.line(fmt::format("{} patches, {}; {}: {}", baked.mesh.size(), transportText(a, baked),
+                         nameOf(options.solver.method), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));
 
@@ -175,12 +204,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.imbalance = baked.solution.energy.imbalance();
     if (baked.journal) baked.journal->remove();
     log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
-    double residual = baked.solution.residual;
-    for (const BakedLight& light : baked.lights) residual = std::max(residual, light.residual);
-    if (residual > options.solver.tolerance && options.solver.bounces == 0) {
-        log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", residual, options.solver.tolerance));
-        outcome.exitCode = ExitCode::TargetMissed;
-    }
+    if (!checkTarget(options, baked, log)) outcome.exitCode = ExitCode::TargetMissed;
     return outcome;
 }
 

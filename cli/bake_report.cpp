@@ -33,10 +33,13 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
+    if (baked.stochastic)
+        options.update(lineSolverOptionsJson(lineSolverOptions(in.transport, in.run)));
+    else
+        options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
     options.update(lightOptionsJson(in.transport.light));
     options["quality"] = in.transport.quality;
-    options.update(solverOptionsJson(solverOptions(in.transport)));
+    if (!baked.stochastic) options.update(solverOptionsJson(solverOptions(in.transport)));
     options["threads"] = threadCount();
     return options;
 }
@@ -67,6 +70,15 @@ Json historyJson(const RadiositySolution& solution) {
     for (const SolverStep& step : solution.history)
         history.push_back({{"iteration", step.iteration}, {"residual", step.residual}, {"seconds", step.seconds}});
     return history;
+}
+
+Json stochasticJson(const StochasticSolution& solution) {
+    return {{"relative_error", solution.relativeError},
+            {"upper_relative_error", solution.upperRelativeError},
+            {"target_reached", solution.targetReached},
+            {"sub_runs", solution.subRuns},
+            {"unshot", solution.unshot},
+            {"imbalance_error", solution.imbalanceError}};
 }
 
 Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
@@ -142,11 +154,14 @@ Json bakeReport(const BakeReportInput& in) {
     report["scene"] = in.scene.path.string();
     report["patches"] = baked.mesh.size();
     report["vertices"] = baked.baked.positions.size();
-    report["method"] = baked.plan ? nameOf(baked.plan->options.method) : "file";
+    report["method"] = baked.stochastic ? in.transport.method.value_or("local-lines")
+                       : baked.plan     ? std::string(nameOf(baked.plan->options.method))
+                                        : "file";
     report["solver"] = nameOf(solverOptions(in.transport).method);
     report["iterations"] = baked.solution.iterations;
     report["residual"] = baked.solution.residual;
     report["history"] = historyJson(baked.solution);
+    if (baked.stochastic) report["stochastic"] = stochasticJson(*baked.stochastic);
     if (!baked.solution.bounces.empty()) report["bounces"] = bouncesJson(baked.mesh, baked.solution);
     report["rays"] = baked.rayCount;
     report["peak_memory_bytes"] = peakMemoryBytes();

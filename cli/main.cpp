@@ -43,7 +43,8 @@ int run(int argc, char** argv) {
     } catch (const CLI::RequiredError& error) {
         if (program.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
             return fail(ExitCode::Usage,
-                        fmt::format("no command \"{}\": there are bake, formfactors, probe, compare, info and verify", argv[1]));
+                        fmt::format("no command \"{}\": there are bake, formfactors, probe, compare, info and verify",
+                                    argv[1]));
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");
     } catch (const CLI::ParseError& error) {
         return fail(ExitCode::Usage, std::string(error.what()) + " (lambert --help)");

@@ -1,6 +1,8 @@
 #include "cli/arguments.h"
 #include "cli/validators.h"
 
+#include "core/error.h"
+
 #include <fmt/format.h>
 
 namespace lambert {
@@ -32,6 +34,75 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("W")
         ->check(between(0.0, 2.0))
         ->group("Solution");
+    command
+        .add_option(
+            "--target-error", a.targetError,
+            "Stochastic and random-walk: relative standard error of E, over all patches, at which to stop; kept in "
+            "19 of 20 runs [0.02; with --rays none]")
+        ->type_name("E")
+        ->check(between(0.0, 1.0))
+        ->group("Solution");
+    command
+        .add_option("--rays", a.rays,
+                    "Stochastic: rays in all, random-walk: walks; with --target-error at most so many [4e9]")
+        ->type_name("N")
+        ->check(between(1.0, 1e15))
+        ->group("Solution");
+}
+
+namespace {
+
+void refuseFormFactors(const TransportArguments& a, SolverMethod method) {
+    const auto refuse = [&](bool given, const char* option) {
+        if (given)
+            throw UsageError(
+                fmt::format("{}: means nothing to the solver {}, which uses no form factors", option, nameOf(method)));
+    };
+    refuse(a.resolution.has_value(), "--resolution");
+    refuse(a.hemicubes.has_value(), "--hemicubes");
+    refuse(a.rotation.has_value(), "--rotation");
+    refuse(a.lines.has_value(), "--lines");
+    refuse(a.formFactorError.has_value(), "--form-factor-error");
+    refuse(a.storage != "auto", "--storage");
+    refuse(a.repair, "--repair");
+    refuse(!a.formFactors.empty(), "--form-factors");
+    refuse(!a.checkpoint.empty(), "--checkpoint");
+    refuse(a.tolerance.has_value(), "--tolerance");
+}
+
+} // namespace
+
+LineSolverOptions lineSolverOptions(const TransportArguments& a, const RunArguments& run) {
+    LineSolverOptions options;
+    options.method = solverOptions(a).method;
+    refuseFormFactors(a, options.method);
+    const std::string method = a.method.value_or("local-lines");
+    if (method != "local-lines" && method != "global-lines")
+        throw UsageError(fmt::format("--method: the solver {} works with local-lines or global-lines, not with {}",
+                                     nameOf(options.method), method));
+    options.lines = method == "global-lines" ? RelaxationLines::Global : RelaxationLines::Local;
+    if (a.lineSet && options.lines == RelaxationLines::Local)
+        throw UsageError("--line-set: means nothing to local-lines");
+    options.lineSet = a.lineSet.value_or("chords") == "bundles" ? LineSet::Bundles : LineSet::Chords;
+    options.sampler = samplerByName(a.sampler.value_or("sobol")).value();
+    if (a.rays) options.rays = static_cast<std::uint64_t>(*a.rays);
+    options.targetError = a.targetError;
+    options.seed = run.seed;
+    checkLineSolver(options);
+    return options;
+}
+
+nlohmann::ordered_json lineSolverOptionsJson(const LineSolverOptions& options) {
+    using Json = nlohmann::ordered_json;
+    const bool global = options.lines == RelaxationLines::Global;
+    Json json;
+    json["rays"] = options.rays ? Json(*options.rays) : Json(nullptr);
+    json["target_error"] = options.targetError ? Json(*options.targetError)
+                           : options.rays      ? Json(nullptr)
+                                               : Json(LineSolverOptions::kTargetError);
+    json["sampler"] = nameOf(options.sampler);
+    json["line_set"] = global ? Json(options.lineSet == LineSet::Bundles ? "bundles" : "chords") : Json(nullptr);
+    return json;
 }
 
 SolverOptions solverOptions(const TransportArguments& a) {
@@ -44,6 +115,9 @@ SolverOptions solverOptions(const TransportArguments& a) {
     options.bounces = a.bounces;
     options.keepBounces = a.keepBounces;
     options.relaxation = a.relaxation;
+    if (!usesLines(options.method) && (a.rays || a.targetError))
+        throw UsageError(fmt::format("{}: means nothing to the solver {}", a.rays ? "--rays" : "--target-error",
+                                     nameOf(options.method)));
     checkSolver(options);
     return options;
 }

@@ -13,7 +13,10 @@ namespace lambert {
 
 /// The one place where a solver is made from its name and options: what a new one needs beside its own files is a line in the
 /// table and the switch of solver.cpp.
-enum class SolverMethod { Jacobi, GaussSeidel, Southwell, ConjugateGradient };
+enum class SolverMethod { Jacobi, GaussSeidel, Southwell, ConjugateGradient, Stochastic, RandomWalk };
+
+/// Whether it sends light along random lines, without form factors: see solveByLines().
+bool usesLines(SolverMethod method);
 
 std::optional<SolverMethod> solverByName(std::string_view name);
 std::string_view nameOf(SolverMethod method);
@@ -30,7 +33,7 @@ struct SolverOptions {
 /// Throws UsageError for what can be known to be wrong without a problem: options out of range, or of another solver.
 void checkSolver(const SolverOptions& options);
 
-/// Solves the problem. Throws UsageError as above, Cancelled. A residual above the tolerance is not an error.
+/// Solves the problem by a method with form factors. Throws UsageError as above, Cancelled. A residual above the tolerance is not an error.
 RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
                         Progress& progress);
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/progress.h"
+#include "core/sample_points.h"
+#include "formfactors/isotropic_lines.h"
+#include "scene/ray_caster.h"
+#include "solver/problem.h"
+#include "solver/solver.h"
+#include "solver/stochastic_relaxation.h"
+#include "solver/stochastic_solution.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace lambert {
+
+/// What the solvers without form factors have in common.
+struct LineSolverOptions {
+    SolverMethod method = SolverMethod::Stochastic; //!< one that usesLines()
+    std::optional<std::uint64_t> rays{};            //!< at most so many in all; none: kMostRays with a target error
+    std::optional<double> targetError{}; //!< relative, see StochasticSolution; none: kTargetError without `rays`
+    RelaxationLines lines = RelaxationLines::Local; //!< of stochastic relaxation
+    LineSet lineSet = LineSet::Chords;              //!< of its global lines
+    Sampler sampler = Sampler::Sobol;               //!< or Random
+    std::uint64_t seed = 1;
+
+    static constexpr double kTargetError = 0.02;
+    static constexpr std::uint64_t kMostRays = 4'000'000'000;
+};
+
+/// Throws UsageError for what can be known to be wrong without a problem.
+void checkLineSolver(const LineSolverOptions& options);
+
+/// Solves the problem without form factors. `rays` are of the scene of its mesh. Throws UsageError as above, Cancelled. A
+/// target error that was not reached is none.
+StochasticSolution solveByLines(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& options,
+                                Progress& progress);
+
+} // namespace lambert
