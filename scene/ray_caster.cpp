@@ -41,6 +41,34 @@ void store(const RTCRayHit16& rays, RayPacket& packet) {
     }
 }
 
+/// With directions of length 1 or so: rays of very short ones lose hits.
+LAMBERT_VECTOR_CLONES
+void load(const ShadowPacket& packet, float scale, RTCRay16& rays) {
+    beginRays(rays, 1.0F);
+    for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
+        const float x = std::abs(packet.directionX[lane]);
+        const float y = std::abs(packet.directionY[lane]);
+        const float z = std::abs(packet.directionZ[lane]);
+        const float xy = x > y ? x : y;
+        const float longest = xy > z ? xy : z;
+        const float length = longest > 0.0F ? longest : 1.0F;
+        rays.org_x[lane] = scale * packet.originX[lane];
+        rays.org_y[lane] = scale * packet.originY[lane];
+        rays.org_z[lane] = scale * packet.originZ[lane];
+        rays.dir_x[lane] = packet.directionX[lane] / length;
+        rays.dir_y[lane] = packet.directionY[lane] / length;
+        rays.dir_z[lane] = packet.directionZ[lane] / length;
+        const float end = scale * length * packet.maxDistance[lane];
+        rays.tfar[lane] = end < std::numeric_limits<float>::max() ? end : std::numeric_limits<float>::max();
+    }
+}
+
+LAMBERT_VECTOR_CLONES
+void store(const RTCRay16& rays, ShadowPacket& packet) {
+    for (int lane = 0; lane < ShadowPacket::kSize; ++lane)
+        packet.occluded[lane] = packet.active[lane] != 0 && rays.tfar[lane] < 0.0F;
+}
+
 /// Occluders have two backs.
 void turnOccluders(const Scene& scene, RayPacket& packet) {
     for (int lane = 0; lane < RayPacket::kSize; ++lane)
@@ -157,20 +185,9 @@ void RayCaster::occluded(ShadowPacket& packet) const {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     alignas(64) RTCRay16 rays;
-    constexpr int kSize = ShadowPacket::kSize;
-    std::copy_n(packet.originX, kSize, rays.org_x);
-    std::copy_n(packet.originY, kSize, rays.org_y);
-    std::copy_n(packet.originZ, kSize, rays.org_z);
-    std::copy_n(packet.directionX, kSize, rays.dir_x);
-    std::copy_n(packet.directionY, kSize, rays.dir_y);
-    std::copy_n(packet.directionZ, kSize, rays.dir_z);
-    std::copy_n(packet.maxDistance, kSize, rays.tfar);
-    std::fill_n(rays.tnear, kSize, 0.0F);
-    std::fill_n(rays.time, kSize, 0.0F);
-    std::fill_n(rays.mask, kSize, ~0U);
-    std::fill_n(rays.flags, kSize, 0U);
+    load(packet, impl_->embree.scale(), rays);
     rtcOccluded16(packet.active, impl_->embree.handle(), &context, &rays);
-    for (int lane = 0; lane < kSize; ++lane) packet.occluded[lane] = packet.active[lane] != 0 && rays.tfar[lane] < 0.0F;
+    store(rays, packet);
 }
 
 const Scene& RayCaster::scene() const { return impl_->scene; }

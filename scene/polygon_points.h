@@ -1,0 +1,20 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <glm/vec2.hpp>
+
+namespace lambert {
+
+/// Maps the unit square to a polygon's chart (see polygonPoint) so that uniform points become uniform on the polygon.
+class PolygonPoints {
+public:
+    PolygonPoints(const Scene& scene, const Polygon& polygon);
+
+    glm::vec2 chartAt(const glm::dvec2& u) const;
+
+private:
+    double share_; ///< of the area in the triangle whose charts end at u + v = 1
+};
+
+} // namespace lambert
