@@ -1,0 +1,62 @@
+#include "vpl/gather.h"
+
+#include "core/error.h"
+#include "vpl/recovery.h"
+#include "vpl/shadowed_sum.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace lambert {
+
+namespace {
+
+constexpr std::uint32_t kMostRecoveryRays = 65536;
+
+void check(const GatherOptions& options) {
+    if (!(options.bound > 0.0))
+        throw UsageError(
+            fmt::format("bound of the geometric term: found {}, allowed is what is above 0", options.bound));
+    if (options.recoveryRays > kMostRecoveryRays)
+        throw UsageError(fmt::format("rays that recover light: found {}, allowed are 0 to {}", options.recoveryRays,
+                                     kMostRecoveryRays));
+}
+
+glm::dvec3 meanOf(const std::vector<glm::dvec3>& values) {
+    if (values.empty()) return glm::dvec3(0.0);
+    return std::accumulate(values.begin(), values.end(), glm::dvec3(0.0)) / static_cast<double>(values.size());
+}
+
+} // namespace
+
+double largestGeometricTerm(const Scene& scene, double bound) {
+    if (!std::isfinite(bound)) return bound;
+    double area = 0.0;
+    for (const Polygon& polygon : scene.polygons) area += polygonArea(scene, polygon);
+    return bound / (area / 6.0);
+}
+
+Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
+                          std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress) {
+    check(options);
+    const double largestTerm = largestGeometricTerm(rays.scene(), options.bound);
+    Gathered result;
+    progress.begin("gather light", receivers.size() * lights.size());
+    ShadowedSum sum = sumLights(rays, lights, receivers, largestTerm, progress);
+    progress.end();
+    result.irradiance = std::move(sum.irradiance);
+    result.cut = meanOf(sum.cut);
+    result.shadowRays = sum.rays;
+    if (options.recoveryRays == 0 || !std::isfinite(largestTerm)) return result;
+
+    const Recovered recovered = recoverLight(rays, lights, receivers, largestTerm, options, progress);
+    for (std::size_t i = 0; i < receivers.size(); ++i) result.irradiance[i] += recovered.irradiance[i];
+    result.recovered = meanOf(recovered.irradiance);
+    result.shadowRays += recovered.shadowRays;
+    result.recoveryRays = recovered.rays;
+    return result;
+}
+
+} // namespace lambert

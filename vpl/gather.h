@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/progress.h"
+#include "scene/ray_caster.h"
+#include "vpl/receiver.h"
+#include "vpl/virtual_point_light.h"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace lambert {
+
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+struct GatherOptions {
+    /// Bound of the geometric term G = cosθ_receiver cosθ_light / d², in units of 1/ℓ² where ℓ² is a sixth of the scene's area
+    /// (a cube's edge): above 0, kUnbounded for none. A bound takes away light in corners, and the noise there.
+    double bound = 10.0;
+    /// Rays from each receiver that recover what the bound takes away (Kollig, Keller 2004); 0 to 65536, 0: none. Does
+    /// nothing without a bound.
+    std::uint32_t recoveryRays = 0;
+    std::uint64_t seed = 1; //!< of these rays
+};
+
+struct Gathered {
+    std::vector<glm::dvec3> irradiance; //!< #receivers, E per m²
+    glm::dvec3 cut{0.0};                //!< mean over the receivers of what the bound took away; in part recovered
+    glm::dvec3 recovered{0.0};          //!< mean over the receivers of what recovery gave back
+    std::uint64_t shadowRays = 0;
+    std::uint64_t recoveryRays = 0;
+};
+
+/// G_max in 1/m² of a bound in units of 1/ℓ²; infinite for kUnbounded.
+double largestGeometricTerm(const Scene& scene, double bound);
+
+/// The irradiance at receivers from virtual point lights, and from the prepared scene's own lights without area exactly:
+///
+///     E(x) = Σ Φ/π min(cosθ_x cosθ_v / d², G_max) V(x, v)  +  point, spot: I cosθ_x / d²  +  directional: E_⊥ cosθ_x
+///
+/// one shadow ray each, in packets from a light to neighbouring receivers. The same whatever the number of threads. Throws
+/// UsageError for options out of range, Cancelled.
+Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
+                          std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress);
+
+} // namespace lambert

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/progress.h"
+#include "scene/ray_caster.h"
+#include "vpl/receiver.h"
+#include "vpl/virtual_point_light.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lambert {
+
+/// What many lights give to many receivers.
+struct ShadowedSum {
+    std::vector<glm::dvec3> irradiance; //!< #receivers
+    std::vector<glm::dvec3> cut;        //!< #receivers: what G_max took away
+    std::uint64_t rays = 0;
+};
+
+/// The sum of gatherIrradiance without recovery; `largestTerm` is G_max (1/m², may be infinite).
+ShadowedSum sumLights(const RayCaster& rays, std::span<const VirtualPointLight> lights,
+                      std::span<const Receiver> receivers, double largestTerm, Progress& progress);
+
+} // namespace lambert

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "scene/scene.h"
+
+#include <cstdint>
+
+namespace lambert {
+
+/// A point of a surface that stands for a share of the light that leaves the scene's surfaces.
+///
+/// It shines as a diffuse surface does: a receiver at distance d gets  E = Φ/π · cosθ_receiver cosθ_light / d²  if nothing
+/// stands between.
+struct VirtualPointLight {
+    glm::vec3 position{0.0F}; //!< on the surface, metres
+    glm::vec3 normal{0.0F};   //!< unit length, to the side that shines
+    Rgb flux{0.0F};           //!< Φ
+    std::uint32_t bounce = 0; //!< reflections behind it; 0: on an emitter
+    float lift = 0.0F;        //!< its shadow rays start so far above the surface, metres
+};
+
+} // namespace lambert
