@@ -15,6 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -35,6 +36,22 @@ struct Found {
     std::vector<Branch> branches;
 };
 
+/// Russian roulette of which every single trial is fair, and together they succeed as often as they should, to within one: a
+/// trial succeeds if the sum of all probabilities so far passes a whole number.
+class FairTrials {
+public:
+    /// `u` uniform in [0, 1).
+    explicit FairTrials(float u) : sum_(static_cast<double>(u)) {}
+    bool succeeds(float probability) {
+        const double before = std::floor(sum_);
+        sum_ += static_cast<double>(probability);
+        return std::floor(sum_) > before;
+    }
+
+private:
+    double sum_;
+};
+
 class Recovery {
 public:
     Recovery(const RayCaster& rays, double largestTerm, std::uint64_t seed)
@@ -45,18 +62,18 @@ public:
         const auto key = philox({index, generation, 0, 0x5245434F}, seed_);
         const OrthonormalBasis frame(from.point.normal);
         Found found;
+        FairTrials trials(uniformFloat(key[2]));
         for (std::uint32_t k = 0; k < count; ++k) {
             const glm::vec3 local(cosineHemisphere({scrambledSobol(k, 0, key[0]), scrambledSobol(k, 1, key[1])}));
             const Ray ray{from.point.position + from.point.lift * from.point.normal,
                           local.x * frame.x + local.y * frame.y + local.z * frame.z};
-            const float chance = uniformFloat(philox({index, generation, k + 1, 0x5245434F}, seed_)[0]);
-            follow(from, ray, from.weight / static_cast<double>(count), chance, found);
+            follow(from, ray, from.weight / static_cast<double>(count), trials, found);
         }
         return found;
     }
 
 private:
-    void follow(const Branch& from, const Ray& ray, const glm::dvec3& weight, float chance, Found& found) const {
+    void follow(const Branch& from, const Ray& ray, const glm::dvec3& weight, FairTrials& trials, Found& found) const {
         const auto hit = rays_.closest(ray);
         if (!hit) return;
         const Scene& scene = rays_.scene();
@@ -72,7 +89,7 @@ private:
         found.emitted += excess * weight * emitted;
         const RussianRoulette roulette(static_cast<float>(excess) *
                                        reflectanceAt(scene, polygon, side, hit->u, hit->v));
-        if (!roulette.survives(chance)) return;
+        if (!trials.succeeds(roulette.probability())) return;
         found.branches.push_back(
             {{point.position, point.normal, point.lift}, from.receiver, weight * glm::dvec3(roulette.weight())});
     }
