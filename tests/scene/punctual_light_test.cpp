@@ -95,7 +95,7 @@ TEST(PunctualLight, SampledDirectionsFollowTheIntensity) {
 // deviation of 0.7 and 0.3 each: four of them.
 TEST(PolygonPoints, AreUniformOnAQuad) {
     const std::array<glm::vec3, 4> trapezoid{{{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {0, 1, 0}}};
-    const Scene scene = quadScene(std::array{trapezoid}, std::array{greyMaterial("grey", 0.5F)});
+    const Scene scene = quadScene(std::vector{trapezoid}, std::array{greyMaterial("grey", 0.5F)});
     const PolygonPoints points(scene, scene.polygons[0]);
     glm::dvec3 mean(0.0);
     for (std::uint32_t i = 0; i < 100000; ++i) {

@@ -1,0 +1,135 @@
+/// Gathering from 1024 virtual point lights at what the pixels of a 640 × 480 picture show, against bare rtcOccluded16 of the
+/// same shadow rays; in turns, on one thread.
+///
+/// "Bare" gets its packets from memory, full ones in the order in which gathering traces them, and throws the answers away;
+/// gathering also sorts receivers, computes geometric terms, packs the rays and adds up the light. One turn takes every
+/// 16th block of neighbouring receivers.
+
+#include "benchmarks/bare_embree.h"
+#include "benchmarks/comparison.h"
+#include "rendering/camera_rays.h"
+#include "rendering/default_camera.h"
+#include "vpl/gather.h"
+#include "vpl/particle_sources.h"
+#include "vpl/receiver_order.h"
+#include "vpl/trace_lights.h"
+
+#include <glm/geometric.hpp>
+
+namespace lambert {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+constexpr std::size_t kLights = 1024, kBlock = 512, kEvery = 16;
+
+/// What the pixels' centres show, of the sides that are not black.
+std::vector<Receiver> pixelReceivers(const BenchmarkScene& scene) {
+    const Camera camera =
+        scene.scene.cameras.empty() ? defaultCamera(scene.scene, scene.rays, 4.0F / 3.0F) : scene.scene.cameras.front();
+    const CameraRays rays(camera, kWidth, kHeight);
+    std::vector<Receiver> receivers;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const auto hit = scene.rays.closest(
+                {camera.eye, rays.direction(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F)});
+            if (!hit || !sideOf(scene.scene, scene.scene.polygons[hit->polygon], hit->front)) continue;
+            const SurfacePoint point = surfacePoint(scene.rays, hit->polygon, hit->front, hit->u, hit->v);
+            receivers.push_back({point.position, point.normal, point.lift});
+        }
+    }
+    return receivers;
+}
+
+std::vector<VirtualPointLight> lightsOf(const BenchmarkScene& scene) {
+    Progress progress;
+    std::vector<VirtualPointLight> lights;
+    for (std::uint32_t n = kLights / 4; lights.size() < kLights; n += n / 4)
+        lights = traceLights(scene.rays, {.particles = n}, progress).lights;
+    lights.resize(kLights);
+    return lights;
+}
+
+/// The shadow rays of a block of receivers as Embree takes them.
+std::vector<RTCRay16> bareRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers) {
+    std::vector<RTCRay16> packets;
+    for (const VirtualPointLight& light : lights) {
+        int lane = 0;
+        const glm::vec3 origin = light.position + light.lift * light.normal;
+        for (const Receiver& receiver : receivers) {
+            const glm::vec3 way = receiver.position - light.position;
+            const float length = glm::length(way);
+            if (!(glm::dot(way, light.normal) > 1e-5F * length) || !(glm::dot(way, receiver.normal) < -1e-5F * length))
+                continue;
+            if (lane == 0) packets.emplace_back();
+            RTCRay16& rays = packets.back();
+            const glm::vec3 direction = receiver.position + receiver.lift * receiver.normal - origin;
+            rays.org_x[lane] = origin.x;
+            rays.org_y[lane] = origin.y;
+            rays.org_z[lane] = origin.z;
+            rays.dir_x[lane] = direction.x;
+            rays.dir_y[lane] = direction.y;
+            rays.dir_z[lane] = direction.z;
+            rays.tfar[lane] = 1.0F;
+            rays.mask[lane] = ~0U;
+            rays.id[lane] = 1; // a ray
+            lane = (lane + 1) % 16;
+        }
+    }
+    return packets;
+}
+
+std::size_t trace(RTCScene scene, std::vector<RTCRay16>& packets) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    std::size_t rays = 0;
+    for (RTCRay16& packet : packets) {
+        alignas(64) int valid[16];
+        for (int lane = 0; lane < 16; ++lane) {
+            valid[lane] = packet.id[lane] != 0 ? -1 : 0;
+            rays += packet.id[lane];
+        }
+        rtcOccluded16(valid, scene, &context, &packet);
+    }
+    return rays;
+}
+
+void compareGather(benchmark::State& state, const BenchmarkScene& scene) {
+    const BareEmbree bare(scene.scene);
+    const std::vector<Receiver> all = pixelReceivers(scene);
+    const std::vector<std::uint32_t> order = receiverOrder(all);
+    const std::vector<VirtualPointLight> lights = lightsOf(scene);
+    Comparison comparison;
+    Progress progress;
+    std::size_t turn = 0;
+    for (auto _ : state) {
+        double bareSeconds = 0.0, ourSeconds = 0.0, rays = 0.0;
+        std::vector<Receiver> some;
+        for (std::size_t first = turn++ % kEvery * kBlock; first < all.size(); first += kEvery * kBlock) {
+            std::vector<Receiver> block;
+            for (std::size_t i = first; i < std::min(first + kBlock, all.size()); ++i) block.push_back(all[order[i]]);
+            std::vector<RTCRay16> packets = bareRays(lights, block);
+            CpuStopwatch watch;
+            rays += static_cast<double>(trace(bare.handle(), packets));
+            bareSeconds += watch.lap();
+            some.insert(some.end(), block.begin(), block.end());
+        }
+        CpuStopwatch watch;
+        const Gathered gathered = gatherIrradiance(scene.rays, lights, some, {}, progress);
+        ourSeconds += watch.lap();
+        if (std::abs(static_cast<double>(gathered.shadowRays) / rays - 1.0) > 1e-3)
+            state.SkipWithError("the two trace different rays");
+        comparison.add(rays, bareSeconds, ourSeconds);
+        state.counters["rays"] = rays;
+    }
+    state.counters["receivers"] = static_cast<double>(all.size());
+    comparison.report(state);
+}
+
+const bool registered = [] {
+    registerComparison("gather", 5, compareGather);
+    return true;
+}();
+
+} // namespace
+} // namespace lambert
