@@ -1,5 +1,3 @@
-// Spot: https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_lights_punctual#inner-and-outer-cone-angles
-
 #include "solver/direct_light.h"
 
 #include "core/error.h"
@@ -9,6 +7,7 @@
 #include "core/warps.h"
 #include "formfactors/patch_sampling.h"
 #include "scene/environment.h"
+#include "scene/punctual_light.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -182,15 +181,6 @@ std::uint64_t seedOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed
 } // namespace
 
 LightSources lightsOf(const Scene& scene) { return {scene.lights, scene.environment.get()}; }
-
-Rgb intensityToward(const PunctualLight& light, const glm::vec3& direction) {
-    if (light.kind != PunctualLight::Kind::Spot) return light.intensity;
-    const float inner = std::cos(light.innerConeAngle);
-    const float outer = std::cos(light.outerConeAngle);
-    const float share =
-        std::clamp((glm::dot(light.direction, direction) - outer) / std::max(0.001F, inner - outer), 0.0F, 1.0F);
-    return share * share * light.intensity;
-}
 
 DirectLight::DirectLight(const RayCaster& rays, const DirectLightOptions& options) : rays_(rays), options_(options) {
     checkDirectLight(options);

@@ -54,8 +54,4 @@ private:
     DirectLightOptions options_;
 };
 
-/// The intensity of a point light or spot (per sr) toward a direction of unit length; the illuminance across (per m²) of a
-/// directional one.
-Rgb intensityToward(const PunctualLight& light, const glm::vec3& direction);
-
 } // namespace lambert
