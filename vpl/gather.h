@@ -39,7 +39,7 @@ double largestGeometricTerm(const Scene& scene, double bound);
 ///
 ///     E(x) = Σ Φ/π min(cosθ_x cosθ_v / d², G_max) V(x, v)  +  point, spot: I cosθ_x / d²  +  directional: E_⊥ cosθ_x
 ///
-/// one shadow ray each, in packets from a light to neighbouring receivers. The same whatever the number of threads. Throws
+/// one shadow ray each (the environment's light is left out), in packets from a light to neighbouring receivers. The same whatever the number of threads. Throws
 /// UsageError for options out of range, Cancelled.
 Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
                           std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress);

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lambert {
 
@@ -225,13 +226,6 @@ Rgb meanReflectanceOf(const Scene& scene, const Polygon& polygon, const SurfaceS
 }
 
 } // namespace
-
-std::optional<Walk> walkByName(std::string_view name) {
-    if (name == "quasi") return Walk::Quasi;
-    if (name == "roulette") return Walk::Roulette;
-    if (name == "fixed") return Walk::Fixed;
-    return std::nullopt;
-}
 
 double meanReflectance(const Scene& scene) {
     double reflecting = 0.0;

@@ -6,9 +6,7 @@
 #include "vpl/virtual_point_light.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace lambert {
@@ -19,9 +17,6 @@ enum class Walk {
     Roulette, ///< with the probability that the surface absorbs them; no bias
     Fixed     ///< after a number of bounces; what comes after is lost
 };
-
-/// quasi, roulette or fixed; nothing for any other name.
-std::optional<Walk> walkByName(std::string_view name);
 
 struct TraceOptions {
     std::uint32_t particles = 1000; //!< N, from the lights; 1 to 2^24

@@ -1,7 +1,7 @@
 /// The lights on an emitter against the closed form of what it gives to a point.
 #include "core/parallel.h"
 #include "formfactors/closed_form.h"
-#include "statistics.h"
+#include "tests/formfactors/exact_case.h"
 #include "vpl_case.h"
 
 #include <gtest/gtest.h>

@@ -34,9 +34,9 @@ TEST(QuasiRandomWalk, KeepsItsCountWhereParticlesEscape) {
     const VplCase c(quadScene(quads, std::array{greyMaterial("lamp", 0.5F, 1.0F), greyMaterial("screen", 0.5F)}));
     std::vector<double> first, second, balance;
     for (std::uint64_t seed = 1; seed <= 32; ++seed) {
-        const VirtualPointLights lights = c.trace({.particles = 10000, .seed = seed});
-        EXPECT_EQ(lights.particles[1], 5000U);
-        EXPECT_EQ(lights.particles[2], 2500U);
+        const VirtualPointLights lights = c.trace({.particles = 30000, .seed = seed});
+        EXPECT_EQ(lights.particles[1], 15000U);
+        EXPECT_EQ(lights.particles[2], 7500U);
         for (const VirtualPointLight& light : lights.ofBounces(1, 1)) EXPECT_EQ(light.normal, glm::vec3(0, 0, -1));
         first.push_back(redFlux(lights.ofBounces(1, 1)));
         second.push_back(redFlux(lights.ofBounces(2, 2)));
