@@ -1,4 +1,5 @@
 /// Closed boxes whose light is known exactly.
+#include "core/parallel.h"
 #include "scene/scene_reader.h"
 #include "statistics.h"
 #include "vpl_case.h"
@@ -107,6 +108,22 @@ TEST(Furnace, HasItsRadiosityWithinOnePercentCompensated) { EXPECT_LT(furnaceErr
 TEST(Furnace, IsDarkerWithABoundAlone) {
     const FurnaceError error = furnaceError({});
     EXPECT_LT(error.mean, -0.02);
+}
+
+TEST(Gathering, GivesTheSameBitsWithAnyNumberOfThreads) {
+    const VplCase c(readScene(LAMBERT_DATA "/cornell_box.obj").scene);
+    const auto run = [&](int threads) {
+        setThreadCount(threads);
+        const VirtualPointLights lights = c.trace({.particles = 3000});
+        const Gathered gathered = c.gather(lights.lights, c.receivers(12), {.recoveryRays = 4});
+        setThreadCount(0);
+        return gathered;
+    };
+    const Gathered one = run(1), five = run(5);
+    EXPECT_EQ(one.irradiance, five.irradiance);
+    EXPECT_EQ(one.cut, five.cut);
+    EXPECT_EQ(one.shadowRays, five.shadowRays);
+    EXPECT_GT(one.recovered.x, 0.0);
 }
 
 // The continuous solution of cube6: fluxes of the lights on each wall are A B of it. Over 16 scrambles of the sequence; the
