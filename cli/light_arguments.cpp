@@ -148,6 +148,7 @@ void addDaylight(Scene& scene, const LightArguments& a) {
     checkLights(a);
     const Sun sun = a.sun.empty() ? Sun{} : parseSun(a.sun);
     scene.environment = skyOf(a, sun);
+    if (scene.environment && scene.environment->isDark()) scene.environment = nullptr;
     if (a.sun.empty() || (kindOf(a.sky) == SkyKind::Overcast && !sun.illuminance)) return;
     PunctualLight light;
     light.name = "sun";

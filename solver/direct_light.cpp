@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/warps.h"
+#include "formfactors/cell_sorter.h"
 #include "formfactors/patch_sampling.h"
 #include "scene/environment.h"
 #include "scene/punctual_light.h"
@@ -13,8 +14,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -120,6 +123,36 @@ RgbSum fromPunctual(const RayCaster& rays, const Receiver& receiver, const Sampl
     return sum.finish() / static_cast<double>(points.size());
 }
 
+/// Points of four dimensions; those that are close in the first two follow each other, so that their rays make good packets.
+class OrderedPoints {
+public:
+    void fill(Sampler sampler, std::uint32_t count, std::uint64_t seed) {
+        const SamplePoints points(sampler, count, 4, seed);
+        count_ = count;
+        coordinates_.resize(std::size_t{4} * count);
+        for (std::uint32_t d = 0; d < 4; ++d)
+            points.fill(0, d, std::span(coordinates_).subspan(std::size_t{d} * count, count));
+        all_.resize(count);
+        std::iota(all_.begin(), all_.end(), 0U);
+        // About four points per cell: a packet spans four cells.
+        const int cellBits = std::min((static_cast<int>(std::bit_width(count / 4)) + 1) / 2, 8);
+        order_ = sorter_.order(coordinates_, count, 2, cellBits, all_);
+    }
+    std::span<const std::uint32_t> order() const { return order_; }
+    /// Coordinates 2 · `pair` and 2 · `pair` + 1.
+    glm::dvec2 at(std::uint32_t index, std::size_t pair) const {
+        const float* first = coordinates_.data() + 2 * pair * count_ + index;
+        return {static_cast<double>(first[0]), static_cast<double>(first[count_])};
+    }
+
+private:
+    std::size_t count_ = 0;
+    std::vector<float> coordinates_; ///< dimension by dimension
+    std::vector<std::uint32_t> all_;
+    CellSorter sorter_;
+    std::span<const std::uint32_t> order_;
+};
+
 /// Both sets of rays count by the balance heuristic (E. Veach, L. Guibas, SIGGRAPH 1995): whichever set a direction ω comes
 /// from, it is worth L cosθ / (N_cos cosθ/π + N_map p(ω)).
 class EnvironmentRays {
@@ -135,16 +168,17 @@ public:
         const auto add = [&](const glm::vec3& direction, const glm::dvec2& place) {
             sum.add({receiver.at(place) + receiver.offset, direction});
         };
-        const SamplePoints cosine(sampler, byCosine_, 4, seed);
-        for (std::uint32_t k = 0; k < byCosine_; ++k) {
-            const glm::vec3 local(cosineHemisphere({cosine.at(k, 0), cosine.at(k, 1)}));
-            add(local.x * frame.x + local.y * frame.y + local.z * frame.z, {cosine.at(k, 2), cosine.at(k, 3)});
+        thread_local OrderedPoints points; // keeps its memory from patch to patch
+        points.fill(sampler, byCosine_, seed);
+        for (const std::uint32_t k : points.order()) {
+            const glm::vec3 local(cosineHemisphere(points.at(k, 0)));
+            add(local.x * frame.x + local.y * frame.y + local.z * frame.z, points.at(k, 1));
         }
         if (byMap_ == 0) return sum.finish();
-        const SamplePoints map(sampler, byMap_, 4, ~seed);
-        for (std::uint32_t k = 0; k < byMap_; ++k) {
-            const glm::vec3 direction(environment_.distribution()->sample({map.at(k, 0), map.at(k, 1)}).direction);
-            if (glm::dot(direction, receiver.normal) > 0.0F) add(direction, {map.at(k, 2), map.at(k, 3)});
+        points.fill(sampler, byMap_, ~seed);
+        for (const std::uint32_t k : points.order()) {
+            const glm::vec3 direction(environment_.distribution()->sample(points.at(k, 0)).direction);
+            if (glm::dot(direction, receiver.normal) > 0.0F) add(direction, points.at(k, 1));
         }
         return sum.finish();
     }

@@ -19,7 +19,9 @@ SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIr
         const RgbSum e = direct(i);
         lit = lit || area(i) * glm::dot(e, e) > 0.0;
     }
-    if (!(squares > 0.0) && !lit) throw InputError("the scene has no light: no material emits, and no light without area reaches a front");
+    if (!(squares > 0.0) && !lit)
+        throw InputError("the scene has no light: no material emits, and no light without area reaches a "
+                         "front; give one with --emit MATERIAL=r,g,b");
     sourceNorm_ = std::sqrt(squares);
 }
 

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "rendering/camera_rays.h"
 #include "rendering/tone_mapping.h"
+#include "scene/environment.h"
 #include "tests/rendering/box_scene.h"
 
 #include <glm/ext/scalar_constants.hpp>
@@ -128,6 +129,16 @@ TEST_F(Wall, ShowsIrradianceUnlessItEmits) {
     EXPECT_NEAR(seenFrom(2.0F, options).x, 2.0F, kRounding);
     scene_.materials[0].emittedRadiance = Rgb(0.5F);
     EXPECT_NEAR(seenFrom(2.0F, options).x, 1.0F, kRounding);
+}
+
+TEST_F(Wall, StandsBeforeTheSky) {
+    scene_.environment = std::make_shared<Environment>(Environment::constant(Rgb(0.25F, 0.5F, 2.0F)));
+    const PatchMesh mesh = test::gridMesh(scene_, 1);
+    const BakedMesh baked = test::bakedWith(scene_, mesh, [](auto&, auto&) { return Rgb(kPi); });
+    const Camera camera = lookAtCamera({0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 90.0F);
+    const Image image = picture(scene_, mesh, baked, camera, sized(64, 64));
+    EXPECT_EQ(image.at(0, 0), Rgb(0.25F, 0.5F, 2.0F));
+    EXPECT_NEAR(image.at(32, 32).x, 1.0F, kRounding);
 }
 
 TEST_F(Wall, StandsBeforeTheBackground) {

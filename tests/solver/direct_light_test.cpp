@@ -133,7 +133,9 @@ TEST(DirectLight, LightInACeilingsPlaneIsNotBehindIt) {
     const auto found = ground.light({{&bulb, 1}});
     EXPECT_NEAR(ground.flux(found), expected, kTolerance * expected);
     for (std::size_t i = 0; i < ground.mesh.size(); ++i) {
-        if (ground.mesh.polygon[i] == 1) EXPECT_EQ(found[i], RgbSum(0.0));
+        if (ground.mesh.polygon[i] == 1) {
+            EXPECT_EQ(found[i], RgbSum(0.0));
+        }
     }
 }
 
