@@ -17,6 +17,7 @@ struct BakeArguments {
     PictureArguments picture;                   //!< with --output-dir, "{}" in its path stands for a scene's name
     std::vector<std::filesystem::path> outputs; //!< of the one scene
     std::filesystem::path outputDir;            //!< or empty
+    std::filesystem::path solution;             //!< or empty; "{}" as in the picture's path
     std::string format;
     std::string reconstruction = "average";
     std::string quantity = "radiosity";

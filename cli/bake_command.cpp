@@ -20,6 +20,7 @@ BakeJob jobOfOneScene(const BakeArguments& a) {
     BakeJob job;
     job.scene = a.scenes.front();
     job.image = a.picture.path;
+    job.solution = a.solution;
     for (const auto& path : a.outputs) {
         const auto format = formatOf(a.format.empty() ? path : std::filesystem::path("x." + a.format));
         if (!format)
@@ -48,8 +49,10 @@ ExitCode bakeOneScene(const BakeArguments& a) {
 
 ExitCode bake(const BakeArguments& a) {
     checkArguments(a);
-    if (a.outputs.empty() && a.outputDir.empty() && a.picture.path.empty() && a.run.json.empty() && !a.dryRun)
-        throw UsageError("nothing to write: give -o FILE, --output-dir DIR, --image FILE or --json FILE");
+    if (a.outputs.empty() && a.outputDir.empty() && a.picture.path.empty() && a.solution.empty() &&
+        a.run.json.empty() && !a.dryRun)
+        throw UsageError("nothing to write: give -o FILE, --output-dir DIR, --image FILE, --solution FILE or "
+                         "--json FILE");
     std::error_code ignored;
     if (a.scenes.size() > 1 && !a.outputs.empty())
         throw UsageError("-o: is for one scene; for several give --output-dir DIR");
@@ -100,6 +103,12 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
                   "Also writes each light on its own: emitting materials, lights by name, the sky")
         ->group("Bake");
     addTransportArguments(command, arguments->transport);
+    command
+        .add_option("--solution", arguments->solution,
+                    "Patches with their light, for `compare bakes` and --warm-start: a .glb; with --output-dir, {} "
+                    "in it stands for a scene's name")
+        ->type_name("FILE")
+        ->group("Solution");
     addPictureArguments(command, arguments->picture);
     addRunArguments(command, arguments->run);
     command

@@ -6,6 +6,7 @@
 
 #include "baking/exposure.h"
 #include "baking/prediction.h"
+#include "baking/solution_file.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "rendering/render.h"
@@ -97,6 +98,15 @@ std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
                               seconds);
 }
 
+SolutionRecord solutionOf(const BakeArguments& a, const BakeJob& job, const BakedScene& baked) {
+    return {*baked.scene,
+            baked.mesh,
+            baked.solution,
+            baked.stochastic ? baked.stochastic->standardError : std::vector<Rgb>{},
+            {job.scene.string(), methodName(baked, a.transport), std::string(nameOf(solverOptions(a.transport).method))},
+            LAMBERT_VERSION};
+}
+
 PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
     PictureArguments result = a.picture;
     result.path = job.image;
@@ -129,7 +139,8 @@ std::vector<fs::path> resultFiles(const BakeJob& job) {
         files.push_back(output.path);
         if (output.format == BakedFormat::Obj) files.push_back(fs::path(output.path).replace_extension(".mtl"));
     }
-    if (!job.image.empty()) files.push_back(job.image);
+    for (const fs::path& file : {job.image, job.solution})
+        if (!file.empty()) files.push_back(file);
     return files;
 }
 
@@ -159,6 +170,7 @@ bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
 void checkArguments(const BakeArguments& a) {
     typedExposure(a.exposure);
     checkPicture(a.picture);
+    if (!a.solution.empty()) requireSolutionName(a.solution, "--solution");
     bakeOptions(a.transport, a.run);
     if (a.perLight && a.skipExisting)
         throw UsageError("--per-light: which files it writes is known only once a scene is read; not with "
@@ -184,6 +196,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     const Stopwatch writing;
     const BakeOutputOptions output{quantityOf(a), exposure, LAMBERT_VERSION};
     for (const BakeJob::Output& target : job.outputs) writeBaked(baked.baked, target.path, target.format, output);
+    if (!job.solution.empty()) writeSolution(solutionOf(a, job, baked), job.solution);
     const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, filesRead(a, job));
     std::optional<Picture> shot;
     if (!job.image.empty()) {

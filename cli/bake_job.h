@@ -24,14 +24,15 @@ struct BakeJob {
     };
     std::filesystem::path scene;
     std::vector<Output> outputs;
-    std::filesystem::path image; //!< or empty
-    std::filesystem::path log;   //!< or empty
+    std::filesystem::path image;    //!< or empty
+    std::filesystem::path solution; //!< or empty
+    std::filesystem::path log;      //!< or empty
 };
 
 /// How the job's scene is read.
 SceneArguments sceneOf(const BakeArguments& arguments, const BakeJob& job);
 
-/// The files with the light: an OBJ comes with an MTL, then the picture. The log is not among them.
+/// The files with the light: an OBJ comes with an MTL, then the picture and the solution. The log is not among them.
 std::vector<std::filesystem::path> resultFiles(const BakeJob& job);
 
 /// What a job is computed from: the scene's files, and those that options name.

@@ -120,6 +120,11 @@ Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overr
 
 Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 
+std::string methodName(const BakedScene& baked, const TransportArguments& transport) {
+    if (baked.stochastic) return transport.method.value_or("local-lines");
+    return baked.plan ? std::string(nameOf(baked.plan->options.method)) : "file";
+}
+
 std::vector<MaterialLight> materialLight(const BakedScene& baked) {
     const PatchMesh& mesh = baked.mesh;
     std::vector<MaterialLight> lights(baked.scene->materials.size());
@@ -154,9 +159,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["scene"] = in.scene.path.string();
     report["patches"] = baked.mesh.size();
     report["vertices"] = baked.baked.positions.size();
-    report["method"] = baked.stochastic ? in.transport.method.value_or("local-lines")
-                       : baked.plan     ? std::string(nameOf(baked.plan->options.method))
-                                        : "file";
+    report["method"] = methodName(baked, in.transport);
     report["solver"] = nameOf(solverOptions(in.transport).method);
     report["iterations"] = baked.solution.iterations;
     report["residual"] = baked.solution.residual;

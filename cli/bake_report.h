@@ -18,6 +18,9 @@ struct MaterialLight {
     RgbSum meanIrradiance{0.0}, meanRadiosity{0.0};
 };
 
+/// The name of the method that form factors came by; "file" if they were read.
+std::string methodName(const BakedScene& baked, const TransportArguments& transport);
+
 /// One entry per material that is used, in the scene's order.
 std::vector<MaterialLight> materialLight(const BakedScene& baked);
 

@@ -88,7 +88,7 @@ FoundScenes findScenes(const BakeArguments& a) {
 }
 
 /// The pattern with every "{}" replaced.
-fs::path imagePath(const fs::path& pattern, const std::string& name) {
+fs::path filePath(const fs::path& pattern, const std::string& name) {
     constexpr std::string_view kName = "{}";
     std::string path = pattern.string();
     for (std::size_t at = path.find(kName); at != std::string::npos; at = path.find(kName, at + name.size()))
@@ -101,7 +101,8 @@ BakeJob jobOf(const BakeArguments& a, const fs::path& scene, const fs::path& com
     const std::string format = a.format.empty() ? "glb" : a.format;
     BakeJob job;
     job.scene = scene;
-    if (!a.picture.path.empty()) job.image = imagePath(a.picture.path, name.string());
+    if (!a.picture.path.empty()) job.image = filePath(a.picture.path, name.string());
+    if (!a.solution.empty()) job.solution = filePath(a.solution, name.string());
     if (a.outputDir.empty()) return job;
     const auto target = [&](const std::string& extension) {
         return a.outputDir / fs::path(name.string() + "." + extension);

@@ -40,6 +40,8 @@ const char* allowedTypes(GltfAccessor::Use use) {
         return "FLOAT or normalised UNSIGNED_BYTE or _SHORT VEC3 or VEC4 for colours";
     case GltfAccessor::Use::Rotations:
         return "FLOAT or normalised BYTE or SHORT VEC4 for rotations";
+    case GltfAccessor::Use::Numbers:
+        return "FLOAT SCALAR";
     }
     return "";
 }
@@ -63,6 +65,8 @@ bool isAllowed(const tinygltf::Accessor& accessor, GltfAccessor::Use use) {
                (isFloat || (isUnsigned && accessor.normalized));
     case GltfAccessor::Use::Rotations:
         return accessor.type == TINYGLTF_TYPE_VEC4 && (isFloat || (isSigned && accessor.normalized));
+    case GltfAccessor::Use::Numbers:
+        return accessor.type == TINYGLTF_TYPE_SCALAR && isFloat;
     }
     return false;
 }

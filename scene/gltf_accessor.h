@@ -24,7 +24,8 @@ public:
         Vectors,            //!< VEC3, float or quantised (KHR_mesh_quantization): positions, translations, scales
         TextureCoordinates, //!< VEC2, float or quantised
         Colours,            //!< VEC3 or VEC4, float or normalised and unsigned
-        Rotations           //!< VEC4, float or normalised and signed
+        Rotations,          //!< VEC4, float or normalised and signed
+        Numbers             //!< SCALAR, float
     };
 
     /// Throws InputError with `file` and the JSON path if the accessor does not exist, has another type, reaches past its

@@ -42,11 +42,12 @@ void refuseDeepNesting(const std::string& file, std::string_view text) {
     }
 }
 
-json parseJson(const std::string& file, std::string_view text) {
+json parseJson(const std::string& file, std::string_view text, json* extras) {
     refuseDeepNesting(file, text);
     try {
         json document = json::parse(text.begin(), text.end());
         if (!document.is_object()) throw InputError(file + ": found JSON that is not an object");
+        if (extras != nullptr && document.contains("extras")) *extras = std::move(document["extras"]);
         for (const char* unused : {"animations", "extras", "skins"}) document.erase(unused);
         if (document.contains("extensions") && document["extensions"].is_object())
             for (auto item = document["extensions"].begin(); item != document["extensions"].end();)
@@ -165,11 +166,11 @@ std::filesystem::path gltfFolder(const std::filesystem::path& path) {
     return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options) {
+tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options, json* extras) {
     const std::string file = path.string();
     const std::string content = readInputFile(path);
     const GltfContainer container = unpackGltf(file, content);
-    json document = parseJson(file, container.jsonText);
+    json document = parseJson(file, container.jsonText, extras);
     requireVersion2(file, document);
     checkGltfMembers(file, document);
 

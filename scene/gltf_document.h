@@ -3,6 +3,7 @@
 #include "scene/scene_reader.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <limits>
@@ -18,8 +19,10 @@ namespace lambert {
 /// Reads a .gltf or .glb file with its buffers into tinygltf's structures. What tinygltf does not check is checked before
 /// it sees the file: container, nesting, the type of every member that the reader uses (checkGltfMembers); and it opens
 /// no files. Images are named but not read. Animations, skins, unknown extensions of the whole file and `extras` are left
-/// out. Throws InputError with the file and, for the JSON part, the path of the member.
-tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options);
+/// out; the `extras` of the whole file, as they stand, go to where the last argument points. Throws InputError with the file
+/// and, for the JSON part, the path of the member.
+tinygltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options,
+                              nlohmann::json* extras = nullptr);
 
 /// The folder that the files named in a scene are relative to.
 std::filesystem::path gltfFolder(const std::filesystem::path& path);

@@ -15,10 +15,12 @@ def bake_all(folder):
         for quantity in ("radiosity", "irradiance"):
             targets = [folder / f"{Path(scene).stem}_{quantity}.{kind}" for kind in ("glb", "gltf")]
             outputs = [word for target in targets for word in ("-o", target)]
-            done = run("bake", DATA / scene, *SMALL, "--quiet", "--quantity", quantity, *outputs)
+            solution = folder / f"{Path(scene).stem}_{quantity}_solution.glb"
+            done = run("bake", DATA / scene, *SMALL, "--quiet", "--quantity", quantity, *outputs,
+                       "--keep-bounces", "--solution", solution)
             if done.returncode != OK:
                 sys.exit(f"{scene}: {done.stderr}")
-            yield from targets
+            yield from (*targets, solution)
 
 
 def main():
