@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
+#include "cli/compare_bakes.h"
 #include "cli/interrupt.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
@@ -218,9 +219,10 @@ void addCompareFormFactors(CLI::App& compare, CommandRun& run) {
 } // namespace
 
 void addCompareCommand(CLI::App& program, CommandRun& run) {
-    CLI::App& compare = *program.add_subcommand("compare", "Methods against each other");
+    CLI::App& compare = *program.add_subcommand("compare", "Methods, or results, against each other");
     compare.require_subcommand(1);
     addCompareFormFactors(compare, run);
+    addCompareBakes(compare, run);
 }
 
 } // namespace lambert

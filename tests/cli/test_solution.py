@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Solution files: `bake --solution`."""
+"""Solution files: `bake --solution`, `compare bakes`."""
 import unittest
 
-from lambert_cli import DATA, USAGE, Gltf, ProgramTest, run
+from lambert_cli import DATA, INPUT, USAGE, Gltf, ProgramTest, png_size, read_json, run
 
 BOX = DATA / "cornell_box.obj"
 SMALL = ("--resolution", "32")  # and some patches
@@ -15,6 +15,11 @@ class Solution(ProgramTest):
         path = self.folder / name
         patches = () if "--patches" in options else ("--patches", "400")
         return path, self.bake(scene, *SMALL, *patches, *options, "--solution", path)
+
+    def compare(self, a, b, *options):
+        report = self.folder / "compared.json"
+        self.run_well("compare", "bakes", a, b, "--json", report, *options)
+        return read_json(report)
 
 
 class Files(Solution):
@@ -57,6 +62,58 @@ class Files(Solution):
                       "--solution", self.folder / "{}_solution.glb")
         self.assertTrue((self.folder / "cornell_box_solution.glb").exists())
         self.assertTrue((self.folder / "furnace_box_solution.glb").exists())
+
+
+class Comparison(Solution):
+    def test_of_a_solution_with_itself_finds_nothing(self):
+        path, _ = self.solve("a.glb")
+        found = self.compare(path, path)
+        self.assertTrue(found["same_patches"])
+        for errors in (found["overall"], *found["channels"].values()):
+            self.assertEqual((errors["rms"], errors["maximum"], errors["bias"], errors["energy_ratio"]), (0, 0, 0, 1))
+
+    def test_finds_a_lamp_that_is_twice_as_bright(self):
+        a, _ = self.solve("a.glb", "--emit", "light=1,1,1")
+        b, _ = self.solve("b.glb", "--emit", "light=2,2,2")
+        for quantity in ("irradiance", "radiosity"):
+            errors = self.compare(a, b, "--quantity", quantity)["overall"]
+            self.assert_close(errors["energy_ratio"], 2, 1e-6)
+            self.assert_close(errors["bias"], errors["mean"], 1e-6)
+            self.assert_close(errors["mean_absolute"], errors["mean"], 1e-6)
+
+    def test_of_other_patches_looks_them_up(self):
+        a, _ = self.solve("a.glb")
+        b, _ = self.solve("b.glb", "--patches", "1600")
+        found = self.compare(a, b)
+        self.assertFalse(found["same_patches"])
+        self.assertLess(found["unmatched_area"], 1e-6)
+        # Patches of half the length: the light between them differs by some percent, that of the room hardly.
+        self.assert_close(found["overall"]["energy_ratio"], 1, 0.02)
+        self.assertLess(found["overall"]["relative_rms"], 0.3)
+
+    def test_keeps_the_sides_of_surfaces_apart(self):
+        scene = DATA / "table_room.obj"
+        a, _ = self.solve("a.glb", "--two-sided", scene=scene)
+        b, _ = self.solve("b.glb", "--two-sided", "--patches", "900", scene=scene)
+        found = self.compare(a, b)
+        self.assertLess(found["unmatched_area"], 1e-3)
+        self.assert_close(found["overall"]["energy_ratio"], 1, 0.05)
+
+    def test_of_another_scene_is_an_input_error(self):
+        a, _ = self.solve("a.glb")
+        b, _ = self.solve("b.glb", scene=DATA / "furnace_box.obj")
+        done = run("compare", "bakes", a, b)
+        self.assertEqual(done.returncode, INPUT, done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_prints_a_table_and_draws_a_picture(self):
+        a, _ = self.solve("a.glb")
+        b, _ = self.solve("b.glb", "--seed", "2")
+        picture = self.folder / "difference.png"
+        done = self.run_well("compare", "bakes", a, b, "--image", picture, "--size", "64x48", "--samples", "1", "--quiet")
+        self.assertEqual([line.split()[0] for line in done.stdout.splitlines()[1:]], ["mean", "red", "green", "blue"])
+        width, height = png_size(picture)
+        self.assertGreaterEqual((width, height), (64, 48))  # with the scale's bar
 
 
 if __name__ == "__main__":

@@ -1,0 +1,78 @@
+#include "comparison/compare_bakes.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kMostUnmatched = 0.01; ///< of the area; edges of fine patches
+
+const std::vector<RgbSum>& lightOf(const StoredSolution& solution, Quantity quantity) {
+    return quantity == Quantity::Radiosity ? solution.solution.radiosity : solution.solution.irradiance;
+}
+
+bool samePatches(const PatchMesh& a, const PatchMesh& b) {
+    return a.frontCount == b.frontCount && a.corners == b.corners && a.positions == b.positions;
+}
+
+/// The patch of `other` at the centre of each patch of `mesh` and on the same side; kNone where there is none.
+std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedScene& other) {
+    if (other.scene->polygons.empty()) return std::vector<std::uint32_t>(mesh.size(), kNone);
+    const RayCaster rays(*other.scene);
+    std::vector<std::uint32_t> result(mesh.size(), kNone);
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const float above = 4.0F * rays.originOffset(std::sqrt(mesh.area[i])); // centres are off by rounding
+        const auto hit = rays.closest({mesh.centroid[i] + above * mesh.normal[i], -mesh.normal[i], 2.0F * above});
+        if (!hit) continue;
+        const std::uint32_t front = other.mesh.lookup.patchAt(hit->polygon, hit->u, hit->v);
+        result[i] = hit->front ? front : other.mesh.lookup.backPatch(hit->polygon, front);
+    }
+    return result;
+}
+
+} // namespace
+
+BakeComparison compareBakes(const StoredSolution& reference, const StoredSolution& other, Quantity quantity) {
+    const PatchMesh& mesh = reference.meshed.mesh;
+    BakeComparison result;
+    result.samePatches = samePatches(mesh, other.meshed.mesh);
+    std::vector<std::uint32_t> patchOf;
+    if (!result.samePatches) patchOf = patchesAtCentres(mesh, other.meshed);
+
+    std::vector<double> area, mean[2], channel[2][3];
+    double all = 0.0, unmatched = 0.0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const auto weight = static_cast<double>(mesh.area[i]);
+        const std::size_t j = result.samePatches ? i : patchOf[i];
+        all += weight;
+        result.difference.push_back(0.0F);
+        if (j == kNone) {
+            unmatched += weight;
+            continue;
+        }
+        area.push_back(weight);
+        const std::array<RgbSum, 2> light{lightOf(reference, quantity)[i], lightOf(other, quantity)[j]};
+        for (std::size_t side = 0; side < 2; ++side) {
+            for (int c = 0; c < 3; ++c) channel[side][c].push_back(light[side][c]);
+            mean[side].push_back((light[side].x + light[side].y + light[side].z) / 3.0);
+        }
+        const RgbSum off = glm::abs(light[1] - light[0]);
+        result.difference.back() = static_cast<float>((off.x + off.y + off.z) / 3.0);
+    }
+    result.unmatchedArea = unmatched / all;
+    if (!(result.unmatchedArea <= kMostUnmatched))
+        throw InputError(fmt::format("the two are of different scenes: at {:.3g} % of the area of A, B has no surface",
+                                     100.0 * result.unmatchedArea));
+    for (std::size_t c = 0; c < 3; ++c) result.channels[c] = fieldErrors(area, channel[0][c], channel[1][c]);
+    result.overall = fieldErrors(area, mean[0], mean[1]);
+    return result;
+}
+
+} // namespace lambert
