@@ -1,5 +1,7 @@
 #include "baking/bake_scene.h"
 
+#include "baking/solution_file.h"
+#include "core/checksum.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
@@ -86,10 +88,27 @@ void bakeLights(const BakeOptions& options, const LightSolver& solver, BakedScen
         result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction}, progress);
 }
 
-/// The whole and, if wanted, each group of lights.
-void solveFor(const BakeOptions& options, const SolverProblem& problem, FormFactorRows& rows, BakedScene& result,
-              Progress& progress) {
-    result.solution = solve(problem, rows, options.solver, progress);
+CheckpointOptions solverCheckpoint(const BakeOptions& options) {
+    CheckpointOptions result = options.formFactors.checkpoint;
+    result.path = solverCheckpointPath(result);
+    return result;
+}
+
+/// What is solved, and from where.
+struct Task {
+    const SolverProblem& problem;
+    std::span<const RgbSum> start; ///< see SolverContext
+};
+
+/// The whole and, if wanted, each group of lights. `formFactors` names what the rows depend on, in one line.
+void solveFor(const BakeOptions& options, const Task& task, FormFactorRows& rows, const std::string& formFactors,
+              BakedScene& result, Progress& progress) {
+    SolverContext context{task.start};
+    if (const CheckpointOptions checkpoint = solverCheckpoint(options); !checkpoint.path.empty())
+        result.checkpoint = std::make_unique<SolverCheckpoint>(
+            checkpoint, fmt::format("{}; {}", formFactors, solverIdentity(task.problem, options.solver, context)));
+    context.checkpoint = result.checkpoint.get();
+    result.solution = solve(task.problem, rows, options.solver, progress, context);
     SolverOptions solver = options.solver;
     solver.keepBounces = false;
     bakeLights(
@@ -97,21 +116,32 @@ void solveFor(const BakeOptions& options, const SolverProblem& problem, FormFact
 }
 
 /// Without form factors.
-void solveWithLines(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+void solveWithLines(const BakeOptions& options, const Task& task, BakedScene& result, Progress& progress) {
     Stopwatch watch;
     const auto run = [&](const SolverProblem& light) {
         StochasticSolution solution = solveByLines(light, *result.rays, options.lineSolver, progress);
         result.rayCount += solution.rays;
         return solution;
     };
-    result.stochastic = run(problem);
+    result.stochastic = run(task.problem);
     result.solution = std::move(static_cast<RadiositySolution&>(*result.stochastic));
     bakeLights(options, run, result, progress);
     result.seconds.solve = watch.lap();
 }
 
+std::string checksumOf(const FormFactorMatrix& matrix) {
+    Checksum sum;
+    std::vector<std::byte> row;
+    for (std::size_t patch = 0; patch < matrix.size(); ++patch) {
+        row.clear();
+        matrix.appendBytes(patch, row);
+        sum.add(row);
+    }
+    return fmt::format("{:016x}", sum.value());
+}
+
 /// The matrix first, then the light.
-void solveStored(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+void solveStored(const BakeOptions& options, const Task& task, BakedScene& result, Progress& progress) {
     Stopwatch watch;
     SceneMatrix obtained = obtainMatrix(options.formFactors, result.mesh, *result.rays, progress);
     const FormFactorMatrix& matrix = obtained.matrix;
@@ -126,17 +156,21 @@ void solveStored(const BakeOptions& options, const SolverProblem& problem, Baked
     result.rows.entries = matrix.entryCount();
     result.rows.bytes = matrix.bytes();
     result.seconds.formFactors = watch.lap();
-    solveFor(options, problem, rows, result, progress);
+    const bool kept = !options.formFactors.checkpoint.path.empty();
+    const std::string identity = fmt::format("lambert {}, form factors {}", options.formFactors.version,
+                                             kept ? checksumOf(matrix) : std::string());
+    solveFor(options, task, rows, identity, result, progress);
     result.seconds.solve = watch.lap();
 }
 
 /// Rows are computed as the solver asks for them.
-void solveComputed(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+void solveComputed(const BakeOptions& options, const Task& task, BakedScene& result, Progress& progress) {
     Stopwatch watch;
     result.plan = planTransport(options.formFactors.transport, result.mesh, *result.rays, progress);
     const auto method = makeMethod(*result.plan, result.mesh, *result.rays);
     ComputedRows rows(*method);
-    solveFor(options, problem, rows, result, progress);
+    const std::string identity = matrixIdentity(*result.plan, result.mesh, *result.scene, options.formFactors.version);
+    solveFor(options, task, rows, identity, result, progress);
     result.rayCount = rows.rowsComputed() * method->raysPerRow();
     result.rows.largestClosureError = rows.largestClosureError();
     result.seconds.solve = watch.lap();
@@ -158,8 +192,20 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
+std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows) {
+    std::filesystem::path path = rows.path;
+    return path.empty() ? path : path += ".solver";
+}
+
+void removeCheckpoints(const BakedScene& baked) {
+    if (baked.journal) baked.journal->remove();
+    if (baked.checkpoint) baked.checkpoint->remove();
+}
+
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
     Stopwatch watch;
+    if (const CheckpointOptions checkpoint = solverCheckpoint(options); !checkpoint.path.empty())
+        SolverCheckpoint::check(checkpoint);
     BakedScene result{meshLitScene(scene, options.mesh, progress)};
     result.seconds.mesh = watch.lap();
 
@@ -167,10 +213,12 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
         result.mesh,
         DirectLight(*result.rays, options.directLight).irradiance(result.mesh, lightsOf(*result.scene), progress));
     result.seconds.directLight = watch.lap();
+    std::vector<RgbSum> start;
+    if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh);
     const auto solveBy = usesLines(options.solver.method)       ? solveWithLines
                          : options.formFactors.transport.stored ? solveStored
                                                                 : solveComputed;
-    solveBy(options, problem, result, progress);
+    solveBy(options, {problem, start}, result, progress);
     assessBacks(result.mesh, *result.rays, result.solution.covered, result.rows);
     watch.lap();
 

@@ -21,7 +21,8 @@ struct BakeOptions {
     MatrixSource formFactors;
     DirectLightOptions directLight;
     SolverOptions solver;
-    LineSolverOptions lineSolver; //!< where solver.method usesLines(): instead of form factors
+    LineSolverOptions lineSolver;      //!< where solver.method usesLines(): instead of form factors
+    std::filesystem::path warmStart{}; //!< a solution of the same patches that the solver begins from; empty: none
     ReconstructionOptions reconstruction;
     bool perLight = false; //!< each group of lights on its own as well, see bakePerLight
 };
@@ -49,18 +50,26 @@ struct BakedScene : MeshedScene {
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
-    std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file, or not used
-    std::optional<RepairReport> repair{};     //!< of the form factors; none: not repaired
-    std::unique_ptr<MatrixJournal> journal{}; //!< see SceneMatrix
-    std::uint64_t rayCount = 0;               //!< of the form factors
+    std::optional<TransportPlan> plan{};            //!< of the form factors; none: read from a file, or not used
+    std::optional<RepairReport> repair{};           //!< of the form factors; none: not repaired
+    std::unique_ptr<MatrixJournal> journal{};       //!< see SceneMatrix
+    std::unique_ptr<SolverCheckpoint> checkpoint{}; //!< to be removed once the result is on the disk
+    std::uint64_t rayCount = 0;                     //!< of the form factors
     RowQuality rows{};
     std::size_t separatedFaces = 0;
     BakeSeconds seconds{};
     std::vector<std::string> warnings{}; //!< one line each
 };
 
+/// The file of the solver's state beside the one of finished rows; empty if that is.
+std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows);
+
 /// meshLitScene, then the light of lights without area, form factors (without a matrix: while the solver works), solution, and
-/// reconstruction at the vertices. Throws InputError if the scene has no light, Cancelled.
+/// reconstruction at the vertices. Throws InputError if the scene has no light, Cancelled, what the readers and writers of
+/// files throw.
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress);
+
+/// To be called once the result is on the disk.
+void removeCheckpoints(const BakedScene& baked);
 
 } // namespace lambert

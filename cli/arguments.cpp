@@ -143,6 +143,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
         options.lineSolver = lineSolverOptions(a, run);
     else
         options.formFactors = matrixSource(a, run);
+    options.warmStart = a.warmStart;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
 }

@@ -47,6 +47,7 @@ struct TransportArguments {
     std::optional<double> targetError;
     int bounces = 0;
     bool keepBounces = false;
+    std::filesystem::path warmStart; //!< a solution file; empty: none
 };
 
 struct RunArguments {
@@ -89,6 +90,9 @@ SolverOptions solverOptions(const TransportArguments& arguments);
 /// For a solver that usesLines(): throws UsageError also for options of form factors.
 LineSolverOptions lineSolverOptions(const TransportArguments& arguments, const RunArguments& run);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
+
+/// Appends the files, other than the scene's, that are read.
+void addTransportInputs(const TransportArguments& arguments, std::vector<std::filesystem::path>& inputs);
 
 /// For reports: the options in force, and what a repair had to change (null: none was asked for).
 nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan);

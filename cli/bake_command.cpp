@@ -35,7 +35,8 @@ ExitCode bakeOneScene(const BakeArguments& a) {
     const BakeJob job = jobOfOneScene(a);
     if (a.dryRun || a.skipExisting) return runBatch(a, {job}, false);
     std::vector<std::filesystem::path> targets = resultFiles(job);
-    for (const auto& target : {a.run.json, a.transport.checkpoint}) targets.push_back(target);
+    const CheckpointOptions rows{a.transport.checkpoint};
+    for (const auto& target : {a.run.json, rows.path, solverCheckpointPath(rows)}) targets.push_back(target);
     checkTargets(targets, filesRead(a, job));
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
@@ -59,8 +60,9 @@ ExitCode bake(const BakeArguments& a) {
     const bool several =
         a.scenes.size() > 1 || (a.outputs.empty() && std::filesystem::is_directory(a.scenes.front(), ignored));
     if (several && a.outputDir.empty() && !a.dryRun) throw UsageError("several scenes: give --output-dir DIR");
-    if (several && !(a.transport.formFactors.empty() && a.transport.checkpoint.empty()))
-        throw UsageError("--form-factors and --checkpoint: are for one scene");
+    if (several &&
+        !(a.transport.formFactors.empty() && a.transport.warmStart.empty() && a.transport.checkpoint.empty()))
+        throw UsageError("--form-factors, --warm-start and --checkpoint: are for one scene");
     if (!a.outputDir.empty() || several) return runBatch(a, planBatch(a), several);
     return bakeOneScene(a);
 }

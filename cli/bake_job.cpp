@@ -99,12 +99,13 @@ std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
 }
 
 SolutionRecord solutionOf(const BakeArguments& a, const BakeJob& job, const BakedScene& baked) {
-    return {*baked.scene,
-            baked.mesh,
-            baked.solution,
-            baked.stochastic ? baked.stochastic->standardError : std::vector<Rgb>{},
-            {job.scene.string(), methodName(baked, a.transport), std::string(nameOf(solverOptions(a.transport).method))},
-            LAMBERT_VERSION};
+    return {
+        *baked.scene,
+        baked.mesh,
+        baked.solution,
+        baked.stochastic ? std::span<const Rgb>(baked.stochastic->standardError) : std::span<const Rgb>(),
+        {job.scene.string(), methodName(baked, a.transport), std::string(nameOf(solverOptions(a.transport).method))},
+        LAMBERT_VERSION};
 }
 
 PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
@@ -146,8 +147,7 @@ std::vector<fs::path> resultFiles(const BakeJob& job) {
 
 std::vector<fs::path> filesRead(const BakeArguments& a, const BakeJob& job) {
     std::vector<fs::path> files = inputFiles(sceneOf(a, job));
-    for (const fs::path& file : {a.transport.formFactors, skyPicture(a.transport.light)})
-        if (!file.empty()) files.push_back(file);
+    addTransportInputs(a.transport, files);
     return files;
 }
 
@@ -215,7 +215,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.rays = baked.rayCount;
     outcome.peakMemory = peakMemoryBytes();
     outcome.imbalance = baked.solution.energy.imbalance();
-    if (baked.journal) baked.journal->remove();
+    removeCheckpoints(baked);
     log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
     if (!checkTarget(options, baked, log)) outcome.exitCode = ExitCode::TargetMissed;
     return outcome;

@@ -40,6 +40,7 @@ Json optionsJson(const BakeReportInput& in) {
     options.update(lightOptionsJson(in.transport.light));
     options["quality"] = in.transport.quality;
     if (!baked.stochastic) options.update(solverOptionsJson(solverOptions(in.transport)));
+    options["warm_start"] = in.transport.warmStart.empty() ? Json(nullptr) : Json(in.transport.warmStart.string());
     options["threads"] = threadCount();
     return options;
 }

@@ -45,9 +45,9 @@ ExitCode probe(const ProbeArguments& a) {
     const BakeOptions options = bakeOptions(a.transport, a.run);
     std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
     inputs.push_back(a.points);
-    for (const std::filesystem::path& file : {a.transport.formFactors, skyPicture(a.transport.light)})
-        if (!file.empty()) inputs.push_back(file);
-    checkTargets(std::array{a.output, a.run.json, a.transport.checkpoint}, inputs);
+    addTransportInputs(a.transport, inputs);
+    const CheckpointOptions rows{a.transport.checkpoint};
+    checkTargets(std::array{a.output, a.run.json, rows.path, solverCheckpointPath(rows)}, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -73,7 +73,7 @@ ExitCode probe(const ProbeArguments& a) {
         writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt, readSeconds,
                               writing.seconds(), total.seconds()}),
                   a.run.json);
-    if (baked.journal) baked.journal->remove();
+    removeCheckpoints(baked);
     return ExitCode::Ok;
 }
 

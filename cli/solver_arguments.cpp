@@ -48,6 +48,12 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("N")
         ->check(between(1.0, 1e15))
         ->group("Solution");
+    command
+        .add_option(
+            "--warm-start", a.warmStart,
+            "A file by --solution of the same patches, to begin from: for other materials or a smaller tolerance")
+        ->type_name("FILE")
+        ->group("Solution");
 }
 
 namespace {
@@ -68,6 +74,7 @@ void refuseFormFactors(const TransportArguments& a, SolverMethod method) {
     refuse(!a.formFactors.empty(), "--form-factors");
     refuse(!a.checkpoint.empty(), "--checkpoint");
     refuse(a.tolerance.has_value(), "--tolerance");
+    refuse(!a.warmStart.empty(), "--warm-start");
 }
 
 } // namespace
@@ -118,7 +125,7 @@ SolverOptions solverOptions(const TransportArguments& a) {
     if (!usesLines(options.method) && (a.rays || a.targetError))
         throw UsageError(fmt::format("{}: means nothing to the solver {}", a.rays ? "--rays" : "--target-error",
                                      nameOf(options.method)));
-    checkSolver(options);
+    checkSolver(options, !a.warmStart.empty());
     return options;
 }
 

@@ -34,14 +34,11 @@ void refuseUnused(const TransportArguments& a, TransportMethod method) {
 void refuseWithoutMatrix(const TransportArguments& a) {
     if (a.repair) throw UsageError("--repair: needs the whole matrix, not --storage none");
     if (!a.formFactors.empty()) throw UsageError("--form-factors: is a matrix to be stored, not --storage none");
-    if (!a.checkpoint.empty()) throw UsageError("--checkpoint: keeps rows of a matrix, not of --storage none");
 }
 
 void refuseBesideFile(const TransportArguments& a) {
-    if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || a.lineSet ||
-        a.formFactorError || !a.checkpoint.empty())
-        throw UsageError("--form-factors: the file holds what was computed; leave out --method, its options and "
-                         "--checkpoint");
+    if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || a.lineSet || a.formFactorError)
+        throw UsageError("--form-factors: the file holds what was computed; leave out --method and its options");
 }
 
 } // namespace
@@ -92,8 +89,8 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
     auto* checkpoint =
         command
             .add_option("--checkpoint", a.checkpoint,
-                        "Keeps finished rows in a file, every minute and when interrupted; removed at the "
-                        "end")
+                        "Keeps finished rows of form factors in a file, every minute and when interrupted, and the "
+                        "solver's state in FILE.solver, every minute; removed at the end")
             ->type_name("FILE")
             ->group("Run");
     command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")
@@ -135,6 +132,11 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
         refuseBesideFile(a);
     checkTransport(options);
     return source;
+}
+
+void addTransportInputs(const TransportArguments& a, std::vector<std::filesystem::path>& inputs) {
+    for (const auto& file : {a.formFactors, a.warmStart, skyPicture(a.light)})
+        if (!file.empty()) inputs.push_back(file);
 }
 
 nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan) {

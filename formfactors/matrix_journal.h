@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/checkpoint.h"
 #include "core/stopwatch.h"
 #include "formfactors/form_factor_matrix.h"
 
@@ -11,12 +12,6 @@
 #include <vector>
 
 namespace lambert {
-
-struct CheckpointOptions {
-    std::filesystem::path path; //!< empty: none
-    bool resume = false;        //!< goes on with the file if it is there; else it must not be there
-    double seconds = 60.0;      //!< between two writings
-};
 
 /// The rows of an unfinished matrix in a file: what was written stays valid whatever happens to the process later.
 ///

@@ -65,8 +65,8 @@ std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, con
     std::string text = fmt::format("lambert {}, {}", version, plan.effort());
     if (hasResolution(o.method)) text += o.randomRotation ? ", random rotation" : ", fixed rotation";
     if (hasLines(o.method)) text += fmt::format(", {}", nameOf(o.sampler));
-    return text + fmt::format(", seed {}, {}, {} patches, scene {:016x}", o.seed, nameOf(*o.storage), mesh.size(),
-                              checksumOf(mesh, scene));
+    return text + fmt::format(", seed {}, {}, {} patches, scene {:016x}", o.seed,
+                              o.storage ? nameOf(*o.storage) : "not stored", mesh.size(), checksumOf(mesh, scene));
 }
 
 FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,

@@ -13,7 +13,6 @@
 // and yet no step lets the residual grow.
 #include "solver/conjugate_gradient.h"
 
-#include "core/stopwatch.h"
 #include "solver/energy_balance.h"
 #include "solver/residual.h"
 
@@ -93,7 +92,16 @@ struct Direction {
 
 class Orthomin {
 public:
-    Orthomin(SymmetrisedSystem& system, Vector residual) : system_(system), residual_(std::move(residual)) {}
+    explicit Orthomin(SymmetrisedSystem& system) : system_(system) {}
+
+    /// Forgets all directions.
+    void start(Vector residual) {
+        residual_ = std::move(residual);
+        directions_ = {};
+        oldest_ = 0;
+        squares_ = std::numeric_limits<double>::infinity();
+        falls_ = true;
+    }
 
     const Vector& residual() const { return residual_; }
     /// Whether the last step has still made the residual smaller.
@@ -121,6 +129,20 @@ public:
         oldest_ = (oldest_ + 1) % kDirections;
     }
 
+    /// Passes all that the next step depends on to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(residual_);
+        for (Direction& direction : directions_) {
+            archive(direction.p);
+            archive(direction.product);
+            archive(direction.square);
+        }
+        archive(oldest_);
+        archive(squares_);
+        archive(falls_);
+    }
+
 private:
     SymmetrisedSystem& system_;
     Vector residual_;
@@ -133,36 +155,59 @@ private:
 } // namespace
 
 RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFactorRows& rows,
-                                         const ConjugateGradientOptions& options, Progress& progress) {
+                                         const ConjugateGradientOptions& options, Progress& progress,
+                                         const SolverContext& context) {
     constexpr double kEnough = 0.5; // a start that gains less has reached what rounding allows
-    const Stopwatch watch;
     const std::size_t count = problem.size();
     SymmetrisedSystem system(problem, rows);
+    Orthomin method(system);
     RadiositySolution solution;
+    Vector z(count, RgbSum(0.0));
+    double before = 0.0; // residual at the last start
+    const auto state = [&](auto& archive) {
+        archive(solution.iterations);
+        archive(solution.residual);
+        archive(before);
+        archive(z);
+        archive(solution.history);
+        method.keep(archive);
+    };
+    const bool restored = context.restore(state);
+    const SolverClock clock(solution.history);
     const auto record = [&](double residual) {
         solution.residual = residual;
-        solution.history.push_back({++solution.iterations, residual, watch.seconds()});
+        solution.history.push_back({++solution.iterations, residual, clock.seconds()});
         progress.advance();
     };
     const auto unfinished = [&] {
         return solution.residual > options.tolerance && solution.iterations < options.maxIterations;
     };
-    Vector z(count, RgbSum(0.0));
-    solution.radiosity = problem.emitted();
+    /// The residual that was updated from step to step is not believed at start and end.
+    const auto measure = [&] {
+        for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
+        record(gatherResidual(problem, rows, solution, progress));
+    };
+    solution.radiosity.resize(count);
     progress.begin("solve", 0);
-    record(gatherResidual(problem, rows, solution, progress));
-    for (bool gains = true; gains && unfinished();) {
-        const double before = solution.residual;
-        Vector residual(count);
-        for (std::size_t i = 0; i < count; ++i) residual[i] = system.scale(i) * solution.irradiance[i] - z[i];
-        Orthomin method(system, std::move(residual));
+    if (!restored) {
+        for (std::size_t i = 0; i < context.start.size(); ++i) z[i] = system.scale(i) * context.start[i];
+        measure();
+    }
+    bool inside = restored; // a state is kept before a step
+    for (bool gains = true; inside || (gains && unfinished());) {
+        if (!inside) {
+            before = solution.residual;
+            Vector residual(count);
+            for (std::size_t i = 0; i < count; ++i) residual[i] = system.scale(i) * solution.irradiance[i] - z[i];
+            method.start(std::move(residual));
+        }
         do {
+            if (!inside) context.offer(state);
+            inside = false;
             method.step(z, progress);
             record(system.relativeNorm(method.residual()));
         } while (unfinished() && method.falls());
-        // The residual that was updated from step to step is not believed at the end.
-        for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
-        record(gatherResidual(problem, rows, solution, progress));
+        measure();
         gains = solution.residual <= kEnough * before;
     }
     progress.end();

@@ -4,6 +4,7 @@
 #include "solver/form_factor_rows.h"
 #include "solver/problem.h"
 #include "solver/solution.h"
+#include "solver/solver_checkpoint.h"
 
 namespace lambert {
 
@@ -20,8 +21,9 @@ struct ConjugateGradientOptions {
 /// the rows also where they are not. Memory: 216 bytes per patch beside the solution.
 ///
 /// A limit reached before the tolerance, or a residual that rounding keeps above it, is not an error; see `residual`.
-/// Throws Cancelled.
+/// Throws Cancelled, and what a checkpoint throws.
 RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFactorRows& rows,
-                                         const ConjugateGradientOptions& options, Progress& progress);
+                                         const ConjugateGradientOptions& options, Progress& progress,
+                                         const SolverContext& context = {});
 
 } // namespace lambert

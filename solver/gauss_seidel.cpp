@@ -1,7 +1,6 @@
 #include "solver/gauss_seidel.h"
 
 #include "core/parallel.h"
-#include "core/stopwatch.h"
 #include "solver/energy_balance.h"
 #include "solver/residual.h"
 
@@ -52,27 +51,40 @@ double gaussSeidelSweep(const SolverProblem& problem, FormFactorRows& rows, doub
 }
 
 RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows& rows,
-                                   const GaussSeidelOptions& options, Progress& progress) {
-    const Stopwatch watch;
+                                   const GaussSeidelOptions& options, Progress& progress,
+                                   const SolverContext& context) {
     const std::size_t count = problem.size();
     RadiositySolution solution;
-    solution.radiosity = problem.emitted();
+    solution.radiosity = problem.startRadiosity(context.start);
     solution.irradiance.resize(count);
     double previous = 0.0;
+    const auto state = [&](auto& archive) {
+        archive(solution.iterations);
+        archive(solution.residual);
+        archive(previous);
+        archive(solution.radiosity);
+        archive(solution.irradiance);
+        archive(solution.history);
+    };
+    context.restore(state);
+    const SolverClock clock(solution.history);
+    const auto unfinished = [&] {
+        return solution.iterations == 0 ||
+               (solution.iterations < options.maxIterations && solution.residual > options.tolerance);
+    };
     progress.begin("solve", 0);
-    for (int sweep = 1; sweep <= options.maxIterations; ++sweep) {
+    while (unfinished()) {
         const double change =
             problem.relativeNorm(gaussSeidelSweep(problem, rows, options.relaxation, solution.radiosity, progress));
+        ++solution.iterations;
         // The residual is about the next sweep's change. To measure it takes as long as a sweep.
-        solution.residual = sweep > 1 && change < previous ? change * change / previous : change;
+        solution.residual = solution.iterations > 1 && change < previous ? change * change / previous : change;
         previous = change;
-        const bool last = sweep == options.maxIterations;
-        const bool measure = solution.residual <= options.tolerance || last;
-        if (measure) solution.residual = gatherResidual(problem, rows, solution, progress);
-        solution.iterations = sweep;
-        solution.history.push_back({sweep, solution.residual, watch.seconds()});
+        // The last one is always measured.
+        if (!unfinished()) solution.residual = gatherResidual(problem, rows, solution, progress);
+        solution.history.push_back({solution.iterations, solution.residual, clock.seconds()});
+        context.offer(state);
         progress.advance();
-        if (measure && solution.residual <= options.tolerance) break;
     }
     progress.end();
     // One more bounce, which was gathered for the residual.

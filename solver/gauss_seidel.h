@@ -4,6 +4,7 @@
 #include "solver/form_factor_rows.h"
 #include "solver/problem.h"
 #include "solver/solution.h"
+#include "solver/solver_checkpoint.h"
 
 #include <vector>
 
@@ -19,9 +20,10 @@ struct GaussSeidelOptions {
 /// radiosities of all others. Residuals in the history are the changes of a sweep, extrapolated to the next one; the last is
 /// measured.
 ///
-/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled.
+/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled, and what a checkpoint throws.
 RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows& rows,
-                                   const GaussSeidelOptions& options, Progress& progress);
+                                   const GaussSeidelOptions& options, Progress& progress,
+                                   const SolverContext& context = {});
 
 /// One sweep over `radiosity`, #patches: B_i += W (B_e,i + ρ_i (E_0,i + Σ_j F_ij B_j) − B_i). Returns Σ A |change|² over
 /// patches and channels. Throws Cancelled.

@@ -1,6 +1,5 @@
 #include "solver/jacobi.h"
 
-#include "core/stopwatch.h"
 #include "solver/energy_balance.h"
 
 #include <algorithm>
@@ -8,16 +7,28 @@
 namespace lambert {
 
 RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows, const JacobiOptions& options,
-                              Progress& progress) {
-    const Stopwatch watch;
+                              Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();
     RadiositySolution solution;
-    solution.radiosity = problem.emitted();
+    solution.radiosity = problem.startRadiosity(context.start);
     solution.irradiance.resize(count);
     std::vector<RgbSum> change(count);
     const int limit = options.bounces > 0 ? std::min(options.bounces, options.maxIterations) : options.maxIterations;
+    const auto state = [&](auto& archive) {
+        archive(solution.iterations);
+        archive(solution.residual);
+        archive(solution.radiosity);
+        archive(solution.irradiance);
+        archive(solution.bounces);
+        archive(solution.history);
+    };
+    const auto unfinished = [&] {
+        return solution.iterations == 0 || (solution.iterations < limit && solution.residual > options.tolerance);
+    };
+    context.restore(state);
+    const SolverClock clock(solution.history);
     progress.begin("solve", 0);
-    for (int iteration = 1; iteration <= limit; ++iteration) {
+    while (unfinished()) {
         gatherAll(rows, solution.radiosity, solution.irradiance, progress);
         for (std::size_t i = 0; i < count; ++i) {
             solution.irradiance[i] += problem.direct(i);
@@ -26,11 +37,10 @@ RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows
             solution.radiosity[i] = next;
         }
         if (options.keepBounces) solution.bounces.emplace_back(change.begin(), change.end());
-        solution.iterations = iteration;
         solution.residual = problem.relativeNorm(change);
-        solution.history.push_back({iteration, solution.residual, watch.seconds()});
+        solution.history.push_back({++solution.iterations, solution.residual, clock.seconds()});
+        context.offer(state);
         progress.advance();
-        if (solution.residual <= options.tolerance) break;
     }
     progress.end();
     settle(problem, rows, solution, progress);

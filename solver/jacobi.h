@@ -4,6 +4,7 @@
 #include "solver/form_factor_rows.h"
 #include "solver/problem.h"
 #include "solver/solution.h"
+#include "solver/solver_checkpoint.h"
 
 namespace lambert {
 
@@ -16,8 +17,8 @@ struct JacobiOptions {
 
 /// Solves the problem by Jacobi iteration from B = B_e: one iteration gathers one bounce, the first one that of E_0 too.
 ///
-/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled.
+/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled, and what a checkpoint throws.
 RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows, const JacobiOptions& options,
-                              Progress& progress);
+                              Progress& progress, const SolverContext& context = {});
 
 } // namespace lambert

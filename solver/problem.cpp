@@ -31,6 +31,12 @@ std::vector<RgbSum> SolverProblem::emitted() const {
     return result;
 }
 
+std::vector<RgbSum> SolverProblem::startRadiosity(std::span<const RgbSum> start) const {
+    std::vector<RgbSum> result = emitted();
+    for (std::size_t i = 0; i < start.size(); ++i) result[i] = radiosity(i, start[i]);
+    return result;
+}
+
 double SolverProblem::sumOfSquares(std::span<const RgbSum> values) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < size(); ++i) sum += area(i) * glm::dot(values[i], values[i]);

@@ -28,6 +28,8 @@ public:
     RgbSum radiosity(std::size_t i, const RgbSum& e) const { return emitted(i) + reflectance(i) * e; } //!< B_e + ρ E
 
     std::vector<RgbSum> emitted() const; //!< #patches, B_e
+    /// #patches: B_e + ρ E for irradiances E to begin from, B_e if there are none.
+    std::vector<RgbSum> startRadiosity(std::span<const RgbSum> start) const;
 
     /// sqrt(Σ A |value|²) over patches and channels, divided by that of B_e + ρ E_0.
     double relativeNorm(std::span<const RgbSum> values) const;

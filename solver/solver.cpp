@@ -1,5 +1,6 @@
 #include "solver/solver.h"
 
+#include "core/checksum.h"
 #include "core/error.h"
 #include "solver/conjugate_gradient.h"
 #include "solver/gauss_seidel.h"
@@ -47,7 +48,7 @@ std::vector<std::string> solverNames() {
     return names;
 }
 
-void checkSolver(const SolverOptions& o) {
+void checkSolver(const SolverOptions& o, bool warmStart) {
     const auto refuse = [&](const char* option) {
         throw UsageError(fmt::format("{}: means nothing to the solver {}", option, nameOf(o.method)));
     };
@@ -55,6 +56,8 @@ void checkSolver(const SolverOptions& o) {
         if (o.bounces != 0) refuse("--bounces");
         if (o.keepBounces) refuse("--keep-bounces");
     }
+    if (warmStart && (o.bounces != 0 || o.keepBounces))
+        throw UsageError("--warm-start: --bounces and --keep-bounces count from the dark; leave them out");
     if (!(o.tolerance > 0.0) && o.bounces == 0)
         throw UsageError("--tolerance: 0 is never reached; allowed with --bounces");
     if (o.relaxation && o.method != SolverMethod::GaussSeidel) refuse("--relaxation");
@@ -62,18 +65,33 @@ void checkSolver(const SolverOptions& o) {
         throw UsageError(fmt::format("--relaxation: found {}, allowed are numbers above 0 and below 2", *o.relaxation));
 }
 
-RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& o,
-                        Progress& progress) {
-    checkSolver(o);
+std::string solverIdentity(const SolverProblem& problem, const SolverOptions& o, const SolverContext& context) {
+    Checksum sum;
+    const auto add = [&](const auto& value) { sum.add(std::as_bytes(std::span(&value, 1))); };
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+        add(problem.mesh().area[i]);
+        add(problem.mesh().reflectance[i]);
+        add(problem.mesh().emittedRadiosity[i]);
+        add(problem.direct(i));
+    }
+    sum.add(std::as_bytes(context.start));
+    return fmt::format("{}, tolerance {}, {} bounces{}, relaxation {}, {} patches, light {:016x}", nameOf(o.method),
+                       o.tolerance, o.bounces, o.keepBounces ? " kept" : "", o.relaxation.value_or(1.0), problem.size(),
+                       sum.value());
+}
+
+RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& o, Progress& progress,
+                        const SolverContext& context) {
+    checkSolver(o, !context.start.empty());
     switch (o.method) {
     case SolverMethod::Jacobi:
-        return solveJacobi(problem, rows, {o.tolerance, o.bounces, o.keepBounces}, progress);
+        return solveJacobi(problem, rows, {o.tolerance, o.bounces, o.keepBounces}, progress, context);
     case SolverMethod::GaussSeidel:
-        return solveGaussSeidel(problem, rows, {o.tolerance, o.relaxation.value_or(1.0)}, progress);
+        return solveGaussSeidel(problem, rows, {o.tolerance, o.relaxation.value_or(1.0)}, progress, context);
     case SolverMethod::Southwell:
-        return solveSouthwell(problem, rows, {o.tolerance}, progress);
+        return solveSouthwell(problem, rows, {o.tolerance}, progress, context);
     case SolverMethod::ConjugateGradient:
-        return solveConjugateGradient(problem, rows, {o.tolerance}, progress);
+        return solveConjugateGradient(problem, rows, {o.tolerance}, progress, context);
     case SolverMethod::Stochastic:
     case SolverMethod::RandomWalk:
         break;

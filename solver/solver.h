@@ -4,6 +4,7 @@
 #include "solver/form_factor_rows.h"
 #include "solver/problem.h"
 #include "solver/solution.h"
+#include "solver/solver_checkpoint.h"
 
 #include <optional>
 #include <string_view>
@@ -30,11 +31,16 @@ struct SolverOptions {
     std::optional<double> relaxation{}; //!< Gauss-Seidel: see there; none: 1
 };
 
-/// Throws UsageError for what can be known to be wrong without a problem: options out of range, or of another solver.
-void checkSolver(const SolverOptions& options);
+/// Throws UsageError for what can be known to be wrong without a problem: options out of range, or of another solver; bounces
+/// that are counted or kept from a `warmStart`, which holds many.
+void checkSolver(const SolverOptions& options, bool warmStart = false);
 
-/// Solves the problem by a method with form factors. Throws UsageError as above, Cancelled. A residual above the tolerance is not an error.
+/// Solves the problem by a method with form factors. Throws UsageError as above, Cancelled, what a checkpoint throws. A residual
+/// above the tolerance is not an error.
 RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
-                        Progress& progress);
+                        Progress& progress, const SolverContext& context = {});
+
+/// One line that names all that the solution depends on, but for the form factors.
+std::string solverIdentity(const SolverProblem& problem, const SolverOptions& options, const SolverContext& context);
 
 } // namespace lambert

@@ -3,10 +3,10 @@
 // S. Gortler, M. F. Cohen, P. Slusallek, Radiosity and relaxation methods, IEEE CG&A 14(6), 1994: why it is Southwell's.
 #include "solver/southwell.h"
 
-#include "core/stopwatch.h"
 #include "solver/energy_balance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -14,7 +14,8 @@ namespace lambert {
 
 namespace {
 
-double sumOfChannels(const RgbSum& v) { return v.x + v.y + v.z; }
+/// The order of shots, also of light that a start had too much of.
+double powerOf(double area, const RgbSum& v) { return area * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z)); }
 
 } // namespace
 
@@ -23,7 +24,7 @@ Southwell::Southwell(const SolverProblem& problem, FormFactorRows& rows)
     for (std::size_t i = 0; i < problem.size(); ++i) {
         irradiance_[i] = problem.direct(i);
         unshot_[i] = problem.source(i);
-        power_[i] = problem.area(i) * sumOfChannels(unshot_[i]);
+        power_[i] = powerOf(problem.area(i), unshot_[i]);
     }
 }
 
@@ -33,16 +34,39 @@ std::uint32_t Southwell::brightest() const {
 
 void Southwell::shoot(std::uint32_t patch) {
     if (const std::size_t count = rows_.wanted(patch); count > 0) expect(patch, count);
-    rows_.row(patch, row_);
     const RgbSum shot = std::exchange(unshot_[patch], RgbSum(0.0));
     power_[patch] = 0.0;
+    receive(patch, shot);
+}
+
+/// All patches receive their share of what one has shot.
+void Southwell::receive(std::uint32_t patch, const RgbSum& shot) {
+    rows_.row(patch, row_);
     const double area = problem_.area(patch);
     for (const FormFactor& factor : row_.entries) {
         const std::uint32_t j = factor.patch;
         const RgbSum received = factor.value * (area / problem_.area(j)) * shot;
         irradiance_[j] += received;
         unshot_[j] += problem_.reflectance(j) * received;
-        power_[j] = problem_.area(j) * sumOfChannels(unshot_[j]);
+        power_[j] = powerOf(problem_.area(j), unshot_[j]);
+    }
+}
+
+void Southwell::startFrom(std::span<const RgbSum> irradiance, const Progress& progress) {
+    const std::vector<RgbSum> start = problem_.startRadiosity(irradiance);
+    std::vector<std::uint32_t> ahead;
+    for (std::uint32_t i = 0; i < start.size(); ++i) {
+        progress.throwIfCancelled();
+        if (const std::size_t count = rows_.wanted(i); count > 0) {
+            ahead.resize(std::min(count, start.size() - i));
+            std::iota(ahead.begin(), ahead.end(), i);
+            rows_.expect(ahead);
+        }
+        receive(i, start[i]);
+    }
+    for (std::size_t i = 0; i < start.size(); ++i) {
+        unshot_[i] -= start[i];
+        power_[i] = powerOf(problem_.area(i), unshot_[i]);
     }
 }
 
@@ -80,16 +104,29 @@ std::vector<RgbSum> Southwell::displayedRadiosity() const {
 }
 
 RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
-                                 Progress& progress) {
-    const Stopwatch watch;
+                                 Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();
     // To measure the residual takes as long as to look for the brightest patch, and somewhat more.
     const auto interval = std::clamp<std::size_t>(count / 16, 1, 1024);
     const auto limit = options.maxShotsPerPatch * static_cast<double>(count);
     RadiositySolution solution;
     Southwell method(problem, rows);
+    const auto state = [&](auto& archive) {
+        archive(solution.iterations);
+        archive(solution.residual);
+        archive(solution.history);
+        method.keep(archive);
+    };
     progress.begin("solve", 0);
-    solution.residual = method.residual();
+    if (!context.restore(state)) {
+        if (!context.start.empty()) {
+            method.startFrom(context.start, progress);
+            solution.iterations = static_cast<std::int64_t>(count);
+        }
+        solution.residual = method.residual();
+        if (!context.start.empty()) solution.history.push_back({solution.iterations, solution.residual, 0.0});
+    }
+    const SolverClock clock(solution.history);
     while (solution.residual > options.tolerance && static_cast<double>(solution.iterations) < limit) {
         for (std::size_t k = 0; k < interval; ++k) {
             method.shoot(method.brightest());
@@ -97,7 +134,8 @@ RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& r
         }
         solution.iterations += static_cast<std::int64_t>(interval);
         solution.residual = method.residual();
-        solution.history.push_back({solution.iterations, solution.residual, watch.seconds()});
+        solution.history.push_back({solution.iterations, solution.residual, clock.seconds()});
+        context.offer(state);
     }
     progress.end();
     solution.radiosity = method.radiosity();

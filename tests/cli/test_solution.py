@@ -1,8 +1,12 @@
 #!/usr/bin/env python3
-"""Solution files: `bake --solution`, `compare bakes`."""
+"""Solution files: `bake --solution`, `bake --warm-start`, `compare bakes`, checkpoints of solvers."""
+import os
+import signal
+import subprocess
+import time
 import unittest
 
-from lambert_cli import DATA, INPUT, USAGE, Gltf, ProgramTest, png_size, read_json, run
+from lambert_cli import DATA, INPUT, OK, PROGRAM, USAGE, Gltf, ProgramTest, png_size, read_json, run
 
 BOX = DATA / "cornell_box.obj"
 SMALL = ("--resolution", "32")  # and some patches
@@ -64,6 +68,46 @@ class Files(Solution):
         self.assertTrue((self.folder / "furnace_box_solution.glb").exists())
 
 
+class WarmStart(Solution):
+    def test_takes_fewer_iterations_to_the_same_light(self):
+        for solver in SOLVERS:
+            options = ("--solver", solver, "--tolerance", "1e-6", "--repair")
+            cold_file, cold = self.solve("cold.glb", *options)
+            warm_file, warm = self.solve("warm.glb", *options, "--warm-start", cold_file)
+            self.assertLess(warm["iterations"], cold["iterations"] / 2, solver)
+            self.assertEqual(warm["options"]["warm_start"], str(cold_file))
+            # Residuals of at most 1e-6, errors below 1e-6 / (1 - 0.8): single precision is finer than both.
+            self.assertLess(self.compare(cold_file, warm_file)["overall"]["relative_rms"], 1e-5, solver)
+
+    def test_serves_another_material_of_the_same_patches(self):
+        start, _ = self.solve("start.glb")
+        change = ("--reflectance", "floor=0.6,0.6,0.6", "--tolerance", "1e-7")
+        cold_file, cold = self.solve("cold.glb", *change)
+        warm_file, warm = self.solve("warm.glb", *change, "--warm-start", start)
+        self.assertLessEqual(warm["iterations"], cold["iterations"])
+        self.assertLess(self.compare(cold_file, warm_file)["overall"]["relative_rms"], 1e-6)
+
+    def test_of_another_mesh_is_an_input_error(self):
+        start, _ = self.solve("start.glb")
+        for scene, options in ((BOX, ("--patches", "800")), (DATA / "furnace_box.obj", ("--patches", "400"))):
+            done = run("bake", scene, *SMALL, *options, "--warm-start", start, "--json", self.folder / "r.json")
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            self.assertIn("start.glb", done.stderr.splitlines()[-1])
+
+    def test_of_no_solution_is_an_input_error(self):
+        baked = self.folder / "baked.glb"
+        self.run_well("bake", BOX, *SMALL, "-o", baked, "--quiet")
+        for file in (baked, BOX, self.write("x.glb", b"glTF\2\0\0\0\xff\xff\xff\xff")):
+            done = run("bake", BOX, *SMALL, "--warm-start", file, "--json", self.folder / "r.json")
+            self.assertEqual(done.returncode, INPUT, done.stderr)
+            self.assertFalse((self.folder / "r.json").exists())
+
+    def test_has_no_bounces(self):
+        start, _ = self.solve("start.glb")
+        done = run("bake", BOX, *SMALL, "--warm-start", start, "--keep-bounces", "--json", self.folder / "r.json")
+        self.assertEqual(done.returncode, USAGE, done.stderr)
+
+
 class Comparison(Solution):
     def test_of_a_solution_with_itself_finds_nothing(self):
         path, _ = self.solve("a.glb")
@@ -114,6 +158,45 @@ class Comparison(Solution):
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()[1:]], ["mean", "red", "green", "blue"])
         width, height = png_size(picture)
         self.assertGreaterEqual((width, height), (64, 48))  # with the scale's bar
+
+
+class Checkpoint(Solution):
+    def killed(self, seconds, *arguments):
+        """Starts the program and kills it after so long; whether it was still running."""
+        with subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            time.sleep(seconds)
+            process.send_signal(signal.SIGKILL)
+            return process.wait() == -signal.SIGKILL
+
+    def test_of_a_solve_that_was_killed_ends_with_the_same_bytes(self):
+        # Shots whose rows are computed: the work is in the solve. States are written after every 25 shots.
+        options = ("--patches", "400", "--hemicubes", "4", "--solver", "southwell", "--storage", "none", "--tolerance",
+                   "1e-3")
+        whole, report = self.solve("whole.glb", *options)
+        checkpoint, killed, kept = self.folder / "state", 0, 0
+        parts = self.folder / "parts.glb"
+        command = ("bake", BOX, *SMALL, *options, "--solution", parts, "--json", self.folder / "parts.json", "--quiet",
+                   "--checkpoint", checkpoint, "--checkpoint-interval", "0", "--resume")
+        for share in (0.2, 0.3, 0.4, 0.5):
+            killed += self.killed(share * report["seconds"]["total"], *command)
+            kept += checkpoint.with_suffix(".solver").exists()
+        self.assertGreater(killed, 0)
+        self.assertGreater(kept, 0)
+        self.assertEqual(run(*command).returncode, OK)
+        self.assertTrue(parts.read_bytes() == whole.read_bytes())
+        self.assertEqual(read_json(self.folder / "parts.json")["iterations"], report["iterations"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["parts.glb", "parts.json", "report.json", "whole.glb"])
+
+    def test_of_another_solver_is_a_usage_error(self):
+        checkpoint = self.folder / "state"
+        solver_state = self.write("state.solver", "Lambert solver checkpoint 1: of something else\n")
+        command = ("bake", BOX, *SMALL, "--json", self.folder / "r.json", "--checkpoint", checkpoint)
+        for more in ((), ("--resume",)):
+            done = run(*command, *more)
+            self.assertEqual(done.returncode, USAGE, done.stderr)
+            self.assertIn("state.solver", done.stderr.splitlines()[-1])
+        self.assertTrue(solver_state.exists())
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ class Options(ProgramTest):
         self.refused("--tolerance", "--solver", "southwell", "--tolerance", "0")
 
     def test_that_need_a_matrix_are_usage_errors_without_one(self):
-        for option in (("--repair",), ("--checkpoint", self.folder / "c"), ("--method", "global-lines"),
+        for option in (("--repair",), ("--method", "global-lines"),
                        ("--form-factors", self.folder / "f.mtx")):
             self.refused(option[0] if option[0] != "--method" else "global-lines", "--storage", "none", *option)
         done = run("formfactors", BOX, *SMALL, "--storage", "none", "-o", self.folder / "f.mtx")
