@@ -57,10 +57,11 @@ public:
         if (++count_ == ShadowPacket::kSize) trace();
     }
 
-    RgbSum finish() {
+    void flush() {
         if (count_ > 0) trace();
-        return sum_;
     }
+    /// Of all rays that are traced; see flush.
+    const RgbSum& value() const { return sum_; }
 
 private:
     void trace() {
@@ -117,10 +118,12 @@ RgbSum fromPunctual(const RayCaster& rays, const Receiver& receiver, const Sampl
     std::vector<glm::vec3> points(samples.count());
     for (std::uint32_t k = 0; k < samples.count(); ++k) points[k] = receiver.at({samples.at(k, 0), samples.at(k, 1)});
     ShadowSum sum(rays, [](const ShadowRay& ray) { return ray.irradiance; });
-    for (const PunctualLight& light : lights)
+    for (const PunctualLight& light : lights) {
         for (const glm::vec3& point : points)
             if (const auto ray = rayTo(light, receiver, point, endGap)) sum.add(*ray);
-    return sum.finish() / static_cast<double>(points.size());
+        sum.flush(); // no packet for two lights: each alone gets the same bits as among others
+    }
+    return sum.value() / static_cast<double>(points.size());
 }
 
 /// Points of four dimensions; those that are close in the first two follow each other, so that their rays make good packets.
@@ -174,13 +177,15 @@ public:
             const glm::vec3 local(cosineHemisphere(points.at(k, 0)));
             add(local.x * frame.x + local.y * frame.y + local.z * frame.z, points.at(k, 1));
         }
-        if (byMap_ == 0) return sum.finish();
+        sum.flush();
+        if (byMap_ == 0) return sum.value();
         points.fill(sampler, byMap_, ~seed);
         for (const std::uint32_t k : points.order()) {
             const glm::vec3 direction(environment_.distribution()->sample(points.at(k, 0)).direction);
             if (glm::dot(direction, receiver.normal) > 0.0F) add(direction, points.at(k, 1));
         }
-        return sum.finish();
+        sum.flush();
+        return sum.value();
     }
 
 private:

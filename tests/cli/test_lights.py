@@ -145,9 +145,9 @@ class Sky(ProgramTest):
         up, on_ground, down = (float(line.split(",")[6]) for line in out.read_text().splitlines()[1:])
         self.assert_close(up, 2 * math.pi, 1e-6)
         self.assert_close(on_ground, 2 * math.pi, 1e-6)
-        # Below, the ground (ρ = 1/2) stands for F of the sky: C-11 of a square of twice the distance gives F, here by bounds.
-        self.assertGreater(down, math.pi)
-        self.assertLess(down, 2 * math.pi)
+        # Of the half below, the ground takes 4 / √2 atan(1 / √2) π^-1 and gives it back ρ = 1/2 times.
+        factor = 4 / (math.pi * math.sqrt(2)) * math.atan(1 / math.sqrt(2))
+        self.assert_close(down, 2 * math.pi * (1 - factor + .5 * factor), 2e-3)
 
     def test_is_in_the_picture_and_in_the_report(self):
         picture = self.folder / "room.png"
