@@ -30,6 +30,7 @@ BakedMesh withoutHoles(const BakedMesh& mesh) {
         result.normals.push_back(mesh.normals[v]);
         result.radiosity.push_back(mesh.radiosity[v]);
         result.irradiance.push_back(mesh.irradiance[v]);
+        if (!mesh.splitBy.empty()) result.splitBy.push_back(mesh.splitBy[v]);
     }
     for (auto& corners : result.faces)
         for (std::uint32_t& vertex : corners)

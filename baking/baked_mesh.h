@@ -16,6 +16,8 @@ struct BakedMesh {
     std::vector<glm::vec3> normals;   //!< #vertices, unit length
     std::vector<Rgb> radiosity;       //!< #vertices, B per m², linear, >= 0
     std::vector<Rgb> irradiance;      //!< #vertices, E per m², linear, >= 0
+    /// #vertices: quads become triangles along the diagonal over which this changes less; empty: what is shown.
+    std::vector<Rgb> splitBy;
     std::vector<std::array<std::uint32_t, 4>>
         faces; //!< one per patch, into the above, counter-clockwise; a triangle ends in kNone
     std::vector<std::uint32_t> faceMaterials; //!< #faces, into materials

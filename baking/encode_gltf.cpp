@@ -46,11 +46,13 @@ void requireFits(std::uint64_t bytes) {
         throw SystemError("glTF files end at 4294967295 bytes and this one needs more; write .ply instead");
 }
 
-/// Splits a quad along the diagonal over which the shown light changes less; the shorter one where both are
-/// equal.
+/// Splits a quad along the diagonal over which the shown light, or BakedMesh::splitBy, changes less; the shorter one where
+/// both are equal.
 bool splitsAlongFirstDiagonal(const BakedMesh& mesh, const std::array<std::uint32_t, 4>& quad, Quantity quantity) {
     const auto change = [&](std::size_t a, std::size_t b) {
-        const Rgb d = shownRadiance(mesh, quad[a], quantity) - shownRadiance(mesh, quad[b], quantity);
+        const Rgb d = mesh.splitBy.empty()
+                          ? shownRadiance(mesh, quad[a], quantity) - shownRadiance(mesh, quad[b], quantity)
+                          : mesh.splitBy[quad[a]] - mesh.splitBy[quad[b]];
         return glm::dot(d, d);
     };
     const float first = change(0, 2);

@@ -53,7 +53,8 @@ BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& so
 
 } // namespace
 
-BakedMesh withLight(BakedMesh mesh, const BakedLight& light) {
+BakedMesh withLight(BakedMesh mesh, const BakedLight& light, Quantity shown) {
+    if (mesh.splitBy.empty()) mesh.splitBy = shown == Quantity::Radiosity ? mesh.radiosity : mesh.irradiance;
     mesh.radiosity = light.radiosity;
     mesh.irradiance = light.irradiance;
     mesh.emitters = light.emitters;

@@ -23,8 +23,9 @@ struct BakedLight {
     std::vector<bool> emitters;             //!< #faces, as BakedMesh::emitters
 };
 
-/// The mesh as this group alone lights it. `mesh` is the one that the whole was baked to.
-BakedMesh withLight(BakedMesh mesh, const BakedLight& light);
+/// The mesh as this group alone lights it. `mesh` is the one that the whole was baked to; its `shown` quantity still decides where
+/// quads are split, so that files of all groups have the same vertices and triangles.
+BakedMesh withLight(BakedMesh mesh, const BakedLight& light, Quantity shown);
 
 struct PerLightOptions {
     DirectLightOptions directLight;

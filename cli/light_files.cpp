@@ -47,7 +47,8 @@ std::vector<WrittenLight> writeLights(const BakedScene& baked, std::span<const B
     checkTargets(targets, inputs);
     for (const WrittenLight& entry : written)
         for (std::size_t k = 0; k < outputs.size(); ++k)
-            writeBaked(withLight(baked.baked, *entry.light), entry.files[k], outputs[k].format, options);
+            writeBaked(withLight(baked.baked, *entry.light, options.quantity), entry.files[k], outputs[k].format,
+                       options);
     return written;
 }
 
