@@ -122,11 +122,11 @@ void addLightArguments(CLI::App& command, LightArguments& a) {
         ->group("Light");
     command
         .add_option("--light-points", a.points,
-                    "Points of a patch from which each light without area is looked for [64]")
+                    "Points of a patch from which each light without area is looked for [256]")
         ->type_name("N")
         ->check(between(1, 65536))
         ->group("Light");
-    command.add_option("--sky-rays", a.skyRays, "Rays of a patch to the sky [1024]")
+    command.add_option("--sky-rays", a.skyRays, "Rays of a patch to the sky [4096]")
         ->type_name("N")
         ->check(between(2, 16777216))
         ->group("Light");

@@ -13,8 +13,8 @@
 namespace lambert {
 
 struct DirectLightOptions {
-    std::uint32_t points = 64;        //!< of a patch from which each light is looked for; 1 to 65536
-    std::uint32_t skyRays = 1024;     //!< per patch, to the environment; 2 to 2^24
+    std::uint32_t points = 256;       //!< of a patch from which each light is looked for; 1 to 65536
+    std::uint32_t skyRays = 4096;     //!< per patch, to the environment; 2 to 2^24
     Sampler sampler = Sampler::Sobol; //!< of points and rays
     std::uint64_t seed = 1;
 };

@@ -129,7 +129,7 @@ TEST(BakeScene, ASceneLitByAPointLightAloneKeepsTheEnergyBalance) {
     Scene scene = boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall});
     scene.lights.push_back({.name = "bulb", .position = {0.4F, 0.5F, 0.7F}});
     const BakedScene baked = bake(scene, 300, 64);
-    // All of 4π I meets the walls; the rest is the error of 64 points per patch.
+    // All of 4π I meets the walls; the rest is the error of the points of each patch.
     EXPECT_NEAR(baked.solution.energy.received.x, 4.0 * std::numbers::pi, 2e-3 * 4.0 * std::numbers::pi);
     EXPECT_EQ(baked.solution.energy.emitted.x, 0.0);
     EXPECT_LE(std::abs(baked.solution.energy.imbalance()), 5e-3); // reciprocity is not enforced

@@ -1,4 +1,4 @@
-// E_0 against closed forms. Where nothing is said, tolerances are 0.2 %, which 64 points per patch must keep.
+// E_0 against closed forms. Where nothing is said, tolerances are 0.2 %, which the default points and rays must keep.
 #include "core/error.h"
 #include "core/parallel.h"
 #include "meshing/build_patch_mesh.h"
@@ -179,7 +179,7 @@ TEST(DirectLight, OneBrightTexelIsItsSolidAngleTimesCosine) {
     const double width = 2.0 * kPi / kColumns;
 
     // The cosine-distributed half hits the texel rarely, and each hit counts as much as one of the other half: of 2 × 8192 rays
-    // 12 ± 3.5 do, which leaves 0.04 %. (Of 2 × 512 it would be 0.17 %.)
+    // 12 ± 3.5 do, which leaves 0.04 %. (Of 2 × 2048 it would be 0.08 %.)
     const DirectLightOptions options{.skyRays = 16384};
     Ground ground({levelQuad({0, 0, 0}, 1.0F)}, 50);
     const double level = 1000.0 * width * (std::pow(std::sin(from), 2) - std::pow(std::sin(to), 2)) / 2.0;
