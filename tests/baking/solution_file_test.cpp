@@ -171,7 +171,7 @@ TEST(SolutionFile, ThatContradictsItselfIsRefused) {
                 expectRefused(name, [&](json& d) { lambert(d)[name] = wrong; });
     }
     expectRefused("patches", [&](json& d) { lambert(d)["patches"] = 0; });
-    expectRefused("corners", [&](json& d) { lambert(d)["patches"] = lambert(d)["patches"].get<int>() + 1; });
+    expectRefused("corners", [&](json& d) { lambert(d)["patches"] = lambert(d)["patches"].get<int>() - 1; });
     expectRefused("front_patches", [&](json& d) { lambert(d)["front_patches"] = 1; });
     expectRefused("accessors", [&](json& d) { lambert(d)["irradiance"] = 1000; });
     expectRefused("corners", [&](json& d) { lambert(d)["corners"] = lambert(d)["material"]; });
