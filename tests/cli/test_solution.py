@@ -179,7 +179,7 @@ class Checkpoint(Solution):
 
     def test_of_a_solve_that_was_killed_ends_with_the_same_bytes(self):
         # Shots whose rows are computed: the work is in the solve. States are written after every 25 shots.
-        options = ("--patches", "400", "--hemicubes", "4", "--solver", "southwell", "--storage", "none", "--tolerance",
+        options = ("--patches", "400", "--hemicubes", "16", "--solver", "southwell", "--storage", "none", "--tolerance",
                    "1e-3")
         whole, report = self.solve("whole.glb", *options)
         checkpoint, killed, kept = self.folder / "state", 0, 0
