@@ -121,6 +121,7 @@ void RelaxationRun::gatherLocally(double rays, Progress& progress) {
     setDensities(rays, options_.gatheringShare, [&](std::size_t i) { return sumOfMagnitudes(sender_[i].excess); });
     Losses losses;
     const std::uint64_t count = exchangeLocally(losses, progress);
+    if (count == 0) return;
     rays_ += count;
     includeInMean(static_cast<double>(count), losses);
     const auto share = static_cast<float>(static_cast<double>(count) / static_cast<double>(rays_));

@@ -53,8 +53,9 @@ SubRunStatistics::SubRunStatistics(const SolverProblem& problem)
 
 void SubRunStatistics::add(std::span<const Rgb> irradiance, const Losses& losses, std::uint64_t rays) {
     rays_ += rays;
-    const auto weight = static_cast<double>(rays);
-    const double share = weight / static_cast<double>(rays_);
+    const auto weight = static_cast<double>(std::max<std::uint64_t>(rays, 1)); // no ray at all tells that little arrives
+    weight_ += weight;
+    const double share = weight / weight_;
     const glm::dvec2 sums = orderedSum(problem_.size(), glm::dvec2(0.0), [&](std::size_t i) {
         const RgbSum before = RgbSum(irradiance[i]) - RgbSum(mean_[i]);
         const RgbSum mean = RgbSum(mean_[i]) + share * before;
@@ -94,14 +95,14 @@ EnergyBalance SubRunStatistics::balance(std::span<const Rgb> irradiance, const L
 
 Rgb SubRunStatistics::standardError(std::size_t patch) const {
     if (runs() < 2) return Rgb(0.0F);
-    const Rgb variance = squares_[patch] / static_cast<float>(static_cast<double>(rays_) * (runs() - 1));
+    const Rgb variance = squares_[patch] / static_cast<float>(weight_ * (runs() - 1));
     return {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
 }
 
 double SubRunStatistics::relativeError() const {
     if (runs() < 2) return kInfinite;
     const double squares = std::accumulate(deviations_.begin(), deviations_.end(), 0.0);
-    return std::sqrt(squares / (static_cast<double>(rays_) * (runs() - 1)) / meanSquare_);
+    return std::sqrt(squares / (weight_ * (runs() - 1)) / meanSquare_);
 }
 
 /// From successive differences, which a trend does not reach: larger runs may deviate less than their rays make one expect.
@@ -132,7 +133,7 @@ void SubRunStatistics::finish(StochasticSolution& solution) {
     solution.residual = solution.relativeError = relativeError();
     solution.upperRelativeError = upperRelativeError();
     solution.energy = energy_;
-    solution.imbalanceError = std::sqrt(imbalanceSquares_ / (static_cast<double>(rays_) * (runs() - 1)));
+    solution.imbalanceError = std::sqrt(imbalanceSquares_ / (weight_ * (runs() - 1)));
     solution.standardError.reserve(problem_.size());
     for (std::size_t i = 0; i < problem_.size(); ++i) solution.standardError.push_back(standardError(i));
     squares_ = {};
@@ -152,12 +153,14 @@ SubRunSchedule::SubRunSchedule(std::uint64_t rays, double targetError, int runs,
 
 std::uint64_t SubRunSchedule::next(const SubRunStatistics& statistics) const {
     if (statistics.runs() < runs_) return first_;
-    if (targetError_ == 0.0 || statistics.rays() >= rays_) return 0;
+    // What is left of the rays may be so few that a run of them draws none.
+    const std::uint64_t left = rays_ - std::min(statistics.rays(), rays_);
+    if (targetError_ == 0.0 || left < first_) return 0;
     const double excess = statistics.upperRelativeError() / targetError_;
     if (excess <= 1.0) return 0;
     const auto rays = static_cast<double>(statistics.rays());
     const double wanted = std::clamp((excess * excess - 1.0) * rays, static_cast<double>(first_), 0.25 * rays);
-    return std::min(static_cast<std::uint64_t>(wanted), rays_ - statistics.rays());
+    return std::min(static_cast<std::uint64_t>(wanted), left);
 }
 
 std::uint64_t subRunSeed(std::uint64_t seed, int run) {

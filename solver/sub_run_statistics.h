@@ -47,6 +47,7 @@ private:
         deviations_;          ///< what a run added to Σ A |squares|: the first nothing, the others expect the same
     double meanSquare_ = 0.0; ///< Σ A |mean|²
     std::uint64_t rays_ = 0;
+    double weight_ = 0.0; ///< of all runs
     EnergyBalance energy_;
     double imbalanceSquares_ = 0.0; ///< Σ rays (imbalance − mean)²
 };

@@ -195,6 +195,16 @@ TEST(StochasticRelaxation, SaysThatTheRaysDidNotSuffice) {
     EXPECT_NEAR(static_cast<double>(solution.rays), 1e5, 1e3);
 }
 
+TEST(StochasticRelaxation, EndsWithHardlyAnyRays) {
+    const StochasticCase c(openCorner(), 60);
+    for (const std::uint64_t rays : {1U, 10U, 100U, 1001U}) {
+        const StochasticSolution solution = solve(c, {.rays = rays, .targetError = 1e-4});
+        EXPECT_LE(solution.rays, 2 * rays + 100);
+        for (const RgbSum& e : solution.irradiance)
+            EXPECT_TRUE(std::isfinite(e.x) && std::isfinite(e.y) && std::isfinite(e.z)) << rays;
+    }
+}
+
 TEST(StochasticRelaxation, SameBitsOnAnyNumberOfThreads) {
     const StochasticCase c(openCorner(), 60);
     std::vector<StochasticSolution> runs;
