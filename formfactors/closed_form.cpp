@@ -233,7 +233,8 @@ double pointToVisiblePolygon(const glm::dvec3& point, const glm::dvec3& normal, 
 double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon) {
     const glm::dvec3 areaVector = polygonAreaVector(polygon);
     if (!(glm::dot(areaVector, point - polygon[0]) > 0.0)) return 0.0;
-    return pointToVisiblePolygon(point, normal, clippedToHalfSpace(polygon, point, normal));
+    const std::vector<glm::dvec3> visible = clippedToHalfSpace(polygon, point, normal);
+    return visible.empty() ? 0.0 : pointToVisiblePolygon(point, normal, visible);
 }
 
 double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to, Care care) {

@@ -127,6 +127,7 @@ TEST(ClosedForm, PointToPolygonIsLamberts) {
         if (glm::dot(polygonAreaVector(polygon), -polygon[0]) < 0.0) polygon = reversed(polygon);
         expectRelative(pointToPolygon(glm::dvec3(0.0), {0, 0, 1}, polygon), value, kReferenceDigits, key);
         EXPECT_EQ(pointToPolygon(glm::dvec3(0.0), {0, 0, 1}, reversed(polygon)), 0.0) << key << " from behind";
+        EXPECT_EQ(pointToPolygon(glm::dvec3(0.0), {0, 0, -1}, polygon), 0.0) << key << " below the horizon";
     }
 }
 
