@@ -2,9 +2,10 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/compare_bakes.h"
+#include "cli/compare_folder.h"
+#include "cli/compare_vpl.h"
 #include "cli/interrupt.h"
 #include "cli/scene_files.h"
-#include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 #include "cli/validators.h"
@@ -42,17 +43,6 @@ struct CompareFormFactorsArguments {
     std::optional<double> threshold;
 };
 
-std::vector<std::string> parts(const std::string& text) {
-    std::vector<std::string> result(1);
-    for (const char c : text) {
-        if (c == ',')
-            result.emplace_back();
-        else
-            result.back() += c;
-    }
-    return result;
-}
-
 using Ladder = FormFactorComparisonOptions::Ladder;
 
 std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
@@ -65,7 +55,7 @@ std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
     if (a.methods == "all")
         for (const ComparedMethod& method : comparedMethods()) add(method);
     else
-        for (const std::string& name : parts(a.methods)) add(comparedMethod(name));
+        for (const std::string& name : commaSeparated(a.methods)) add(comparedMethod(name));
     for (const std::string& text : a.efforts) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos)
@@ -76,27 +66,10 @@ std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
         if (ladder == result.end())
             throw UsageError(fmt::format("--efforts: {} is not among the compared methods", method.name));
         ladder->efforts.clear();
-        for (const std::string& effort : parts(text.substr(equals + 1)))
+        for (const std::string& effort : commaSeparated(text.substr(equals + 1)))
             ladder->efforts.push_back(parseEffort(method, effort));
     }
     return result;
-}
-
-/// What can keep the page from being written is found before the work; a folder that is missing is made after it.
-void checkFolder(const CompareFormFactorsArguments& a, const FormFactorComparisonOptions& options) {
-    std::vector<fs::path> inputs = inputFiles(a.scene);
-    if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
-    std::error_code ignored;
-    if (fs::exists(a.output, ignored)) {
-        checkTargets(
-            std::array{a.output / "index.html", a.output / "results.json", a.output / "results.csv", a.run.json},
-            inputs);
-        return;
-    }
-    checkTargets(std::array{a.run.json}, inputs);
-    fs::path folder = fs::absolute(a.output);
-    while (folder.has_relative_path() && !fs::exists(folder, ignored)) folder = folder.parent_path();
-    requireWritable(folder / "index.html");
 }
 
 nlohmann::ordered_json report(const CompareFormFactorsArguments& a, const ReadReport& read, const MeshedScene& scene,
@@ -117,15 +90,6 @@ nlohmann::ordered_json report(const CompareFormFactorsArguments& a, const ReadRe
     return json;
 }
 
-/// All files of the folder, or none.
-void writeFolder(const fs::path& folder, std::vector<FileContent> files) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw SystemError(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
-    for (FileContent& file : files) file.path = folder / file.path;
-    writeWholeFiles(files);
-}
-
 ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     FormFactorComparisonOptions options;
     options.ladders = ladders(a);
@@ -135,7 +99,9 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     options.threshold = a.threshold;
     const BakeOptions mesh = bakeOptions(a.transport, a.run);
     checkPicture(a.picture);
-    checkFolder(a, options);
+    std::vector<fs::path> inputs = inputFiles(a.scene);
+    if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
+    checkPageFolder(a.output, a.run.json, inputs);
     requireGnuplot();
 
     applyThreads(a.run);
@@ -165,7 +131,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     files.push_back({"results.csv", comparisonCsv(comparison, a.run.seed)});
     files.push_back({"results.json", jsonText(json)});
     progress.throwIfCancelled();
-    writeFolder(a.output, std::move(files));
+    writePageFolder(a.output, std::move(files));
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", comparisonText(comparison));
     logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
@@ -222,6 +188,7 @@ void addCompareCommand(CLI::App& program, CommandRun& run) {
     CLI::App& compare = *program.add_subcommand("compare", "Methods, or results, against each other");
     compare.require_subcommand(1);
     addCompareFormFactors(compare, run);
+    addCompareVpl(compare, run);
     addCompareBakes(compare, run);
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/whole_file.h"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// The folder that a comparison writes its page to.
+
+/// "a,b,c" as a, b and c.
+std::vector<std::string> commaSeparated(const std::string& text);
+
+/// What can keep the page from being written is found before the work: to be called before it. A folder that is missing is made
+/// after it. `json` may be empty. Throws UsageError, SystemError.
+void checkPageFolder(const std::filesystem::path& folder, const std::filesystem::path& json,
+                     std::span<const std::filesystem::path> inputs);
+
+/// All files of the folder, their paths within it, or none. Throws SystemError.
+void writePageFolder(const std::filesystem::path& folder, std::vector<FileContent> files);
+
+} // namespace lambert

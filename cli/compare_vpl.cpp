@@ -1,0 +1,216 @@
+#include "cli/compare_vpl.h"
+
+#include "cli/arguments.h"
+#include "cli/bake_report.h"
+#include "cli/compare_folder.h"
+#include "cli/interrupt.h"
+#include "cli/scene_files.h"
+#include "cli/terminal_progress.h"
+#include "cli/terminal_text.h"
+#include "cli/validators.h"
+
+#include "comparison/gnuplot.h"
+#include "comparison/instant_radiosity_method.h"
+#include "comparison/vpl_report.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace lambert {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kCoarser = 0.2;       ///< of what is added to the polygons by default: the reference's mesh is finer
+constexpr double kMostVpls = 16777216; ///< see TraceOptions
+
+struct CompareVplArguments {
+    SceneArguments scene;
+    TransportArguments transport; //!< of which mesh and light
+    PictureArguments picture;     //!< of which size and camera
+    RunArguments run;
+    fs::path output;
+    std::string methods = "all";
+    double vpls = 1024.0;
+    std::vector<double> ladder;
+    int seeds = 16;
+    std::string walk = "quasi";
+    std::uint32_t bounces = 4;
+    std::string clamp = "10";
+    bool compensate = false;
+};
+
+using Method = std::shared_ptr<const VplMethod>;
+
+double bound(const std::string& text) {
+    if (text == "none") return kUnbounded;
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value)) return value;
+    throw UsageError(fmt::format("--clamp: found \"{}\", allowed are numbers above 0 and none", text));
+}
+
+Method instantRadiosity(const CompareVplArguments& a) {
+    InstantRadiosityChoice choice;
+    choice.walk = a.walk == "quasi" ? Walk::Quasi : a.walk == "roulette" ? Walk::Roulette : Walk::Fixed;
+    choice.bounces = a.bounces;
+    choice.bound = bound(a.clamp);
+    choice.compensate = a.compensate;
+    return std::make_shared<InstantRadiosityMethod>(choice);
+}
+
+/// What --methods names.
+struct NamedMethod {
+    const char* name;
+    Method (*make)(const CompareVplArguments&);
+};
+constexpr std::array kMethods{NamedMethod{"instant-radiosity", instantRadiosity}};
+
+std::vector<std::string> vplMethodNames() {
+    std::vector<std::string> names;
+    for (const NamedMethod& method : kMethods) names.emplace_back(method.name);
+    return names;
+}
+
+std::vector<Method> methods(const CompareVplArguments& a) {
+    std::vector<std::string> names = a.methods == "all" ? vplMethodNames() : commaSeparated(a.methods);
+    std::vector<Method> result;
+    for (const std::string& name : names) {
+        const auto found =
+            std::find_if(kMethods.begin(), kMethods.end(), [&](const NamedMethod& m) { return m.name == name; });
+        if (found == kMethods.end())
+            throw UsageError(
+                fmt::format("--methods: no method \"{}\": there are {}", name, fmt::join(vplMethodNames(), ", ")));
+        if (std::count(names.begin(), names.end(), name) > 1)
+            throw UsageError(fmt::format("--methods: {} is named twice", name));
+        result.push_back(found->make(a));
+    }
+    return result;
+}
+
+/// By steps of four around the number of the anatomy, unless given.
+std::vector<double> ladder(const CompareVplArguments& a) {
+    if (!a.ladder.empty()) return a.ladder;
+    std::vector<double> efforts;
+    for (const double factor : {1.0 / 16.0, 1.0 / 4.0, 4.0, 16.0})
+        efforts.push_back(std::clamp(std::floor(factor * a.vpls), 1.0, kMostVpls));
+    return efforts;
+}
+
+nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& read, const MeshedScene& scene,
+                              const VplComparison& comparison, double seconds) {
+    nlohmann::ordered_json json;
+    json["scene"] = a.scene.path.string();
+    json["patches"] = scene.mesh.size();
+    json["options"] = sceneOptionsJson(a.scene, read.overrides);
+    json["options"]["vpls"] = a.vpls;
+    json["options"]["walk"] = a.walk;
+    if (a.walk == "fixed") json["options"]["vpl_bounces"] = a.bounces;
+    json["options"]["clamp"] = a.clamp;
+    json["options"]["compensate"] = a.compensate;
+    json["options"]["threads"] = threadCount();
+    json["seed"] = a.run.seed;
+    json["seeds"] = a.seeds;
+    json["version"] = LAMBERT_VERSION;
+    json["seconds"] = seconds;
+    json.update(vplComparisonJson(comparison));
+    return json;
+}
+
+ExitCode compareVpl(const CompareVplArguments& a) {
+    VplComparisonOptions options;
+    options.methods = methods(a);
+    options.effort = a.vpls;
+    options.ladder = ladder(a);
+    options.seeds = a.seeds;
+    options.seed = a.run.seed;
+    MeshOptions mesh = meshOptions(a.transport);
+    mesh.refinement *= kCoarser;
+    checkPicture(a.picture);
+    checkPageFolder(a.output, a.run.json, inputFiles(a.scene));
+    requireGnuplot();
+
+    applyThreads(a.run);
+    TerminalProgress progress(a.run.quiet);
+    const InterruptGuard interrupt(progress);
+    const Stopwatch watch;
+    const ReadResult read = readScene(a.scene, &progress);
+    logReport(a.run, read.report);
+    const MeshedScene scene = meshLitScene(read.scene, mesh, progress);
+    logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
+                                       scene.mesh.size())));
+    options.onStage = [&](const std::string& what) { progress.setTitle(what); };
+    options.gathering.seed = a.run.seed;
+    const Stopwatch referenceWatch;
+    const RadiosityReference reference(scene, {.mesh = mesh, .seed = a.run.seed, .onStage = options.onStage}, progress);
+    const double referenceSeconds = referenceWatch.seconds();
+    VplComparison comparison = compareVpl(scene, reference, options, progress);
+    comparison.referenceSeconds = referenceSeconds;
+
+    progress.setTitle("page");
+    const nlohmann::ordered_json json = report(a, read.report, scene, comparison, watch.seconds());
+    std::vector<FileContent> files;
+    files.push_back({"results.csv", vplComparisonCsv(comparison, a.run.seed)});
+    files.push_back({"results.json", jsonText(json)});
+    progress.throwIfCancelled();
+    writePageFolder(a.output, std::move(files));
+    if (!a.run.json.empty()) writeJson(json, a.run.json);
+    fmt::print("{}", vplComparisonText(comparison));
+    return ExitCode::Ok;
+}
+
+} // namespace
+
+void addCompareVpl(CLI::App& compare, CommandRun& run) {
+    auto arguments = std::make_shared<CompareVplArguments>();
+    CompareVplArguments& a = *arguments;
+    CLI::App& command = *compare.add_subcommand(
+        "vpl", "Methods by virtual point lights: their error against patch radiosity, and what it is made of");
+    addSceneArguments(command, a.scene);
+    command.add_option("-o,--output", a.output, "Folder for index.html, results.json, results.csv and pictures")
+        ->required()
+        ->type_name("DIR")
+        ->group("Comparison");
+    command
+        .add_option("--methods", a.methods, fmt::format("all, or some of {} [all]", fmt::join(vplMethodNames(), ",")))
+        ->type_name("A,B,…")
+        ->group("Comparison");
+    command.add_option("--vpls", a.vpls, "Particles of the anatomy and the pictures, 1 to 16777216 [1024]")
+        ->type_name("N")
+        ->check(between(1.0, kMostVpls))
+        ->group("Comparison");
+    command.add_option("--ladder", a.ladder, "Further numbers of particles [N/16 N/4 4N 16N]")
+        ->type_name("N,N,…")
+        ->delimiter(',')
+        ->check(between(1.0, kMostVpls))
+        ->group("Comparison");
+    command.add_option("--seeds", a.seeds, "Runs of each method and number, 3 to 1000 [16]")
+        ->type_name("K")
+        ->check(between(3.0, 1000.0))
+        ->group("Comparison");
+    command.add_option("--walk", a.walk, "How particles end: quasi, roulette or fixed [quasi]")
+        ->check(CLI::IsMember({"quasi", "roulette", "fixed"}))
+        ->group("Method");
+    command.add_option("--vpl-bounces", a.bounces, "Of fixed walks, 0 to 126 [4]")
+        ->type_name("K")
+        ->check(between(0.0, 126.0))
+        ->group("Method");
+    command
+        .add_option("--clamp", a.clamp, "Bound of the geometric term, in units of 6 / area of the scene; or none [10]")
+        ->type_name("G|none")
+        ->group("Method");
+    command.add_flag("--compensate", a.compensate, "Recovers what the bound takes away (Kollig, Keller 2004)")
+        ->group("Method");
+    addMeshArguments(command, a.transport);
+    addCameraArguments(command, a.picture);
+    addRunArguments(command, a.run);
+    command.callback([arguments, &run] { run = [arguments] { return compareVpl(*arguments); }; });
+}
+
+} // namespace lambert

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "comparison/vpl_method.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lambert {
+
+/// What one approximation owns of a method's error.
+struct ErrorPart {
+    Approximation approximation;
+    double share = 0.0;      //!< of the expected squared error; of all parts with what is left: 1
+    double shareError = 0.0; //!< standard error of the share; 0 for a method without chance
+    double rms = 0.0;        //!< of the part alone, free of noise; in the fields' unit
+    double bias = 0.0;       //!< its mean
+    double biasError = 0.0;  //!< standard error of it
+    double rmsWithout = 0.0; //!< RMS error that would be left if this part alone were taken away
+};
+
+/// How a method's error is put together. With F_0 the field that it computes with some random numbers, F_k that with its first k
+/// approximations exchanged for exact ones, and R the reference:
+///
+///     F_0 − R = (F_0 − ⟨F_0⟩) + ⟨F_0 − F_1⟩ + … + ⟨F_(n−1) − F_n⟩ + ⟨F_n − R⟩
+///                 sampling       part 1             part n           what is left
+///
+/// ⟨⟩ being the mean over random numbers. A part p has the share ⟨(F_0 − R, p)⟩ / ⟨|F_0 − R|²⟩, in the weighted inner product
+/// over receivers and channels: shares add up to 1 whatever the parts are, one that is at right angles to the error
+/// has none, one that cancels others has a negative one. All means are over pairs of different runs, so that noise that a part and
+/// the error have in common is not taken for a share.
+struct ErrorAnatomy {
+    double rms = 0.0;             //!< √⟨|F_0 − R|²⟩
+    double rmsError = 0.0;        //!< standard error
+    std::vector<ErrorPart> parts; //!< sampling, then the method's approximations
+    ErrorPart left;               //!< what is left unexplained: the reference's error, and what no approximation names
+};
+
+/// `weight` (#receivers, above 0), `reference` (#receivers), `runs` (#runs × #approximations + 1 × #receivers, of independent random
+/// numbers each; at least 3, or 1 for a method without chance). Standard errors are by the jackknife over the runs.
+ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference,
+                          std::span<const std::vector<std::vector<RgbSum>>> runs,
+                          std::span<const Approximation> approximations, const Approximation& sampling);
+
+} // namespace lambert

@@ -1,0 +1,170 @@
+#include "comparison/radiosity_reference.h"
+
+#include "core/random.h"
+#include "formfactors/transport.h"
+#include "solver/direct_light.h"
+#include "solver/solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kFewestLines = 1024, kMostLines = 16384; ///< per patch
+constexpr double kLeastRefinement = 1.4;                  ///< of patch lengths from mesh to mesh, where 2 is aimed at
+constexpr double kLowestOrder = 1.0, kHighestOrder = 2.0;
+constexpr double kLineRatio = 4.0; ///< of the two sets of lines
+
+/// Small against what is compared.
+constexpr SolverOptions kSolve{.tolerance = 1e-6};
+
+/// Patches `factor` times as long as those of the scene's mesh.
+MeshOptions scaledMesh(const MeshedScene& scene, MeshOptions options, double factor) {
+    if (std::isfinite(scene.meshReport.patchLength)) {
+        options.patchLength = factor * scene.meshReport.patchLength;
+        options.patches.reset();
+    } else {
+        options.patches = static_cast<std::size_t>(static_cast<double>(scene.mesh.size()) / (factor * factor));
+    }
+    return options;
+}
+
+/// By how much patches become shorter.
+double refinement(const PatchMesh& coarse, const PatchMesh& fine) {
+    return std::sqrt(static_cast<double>(fine.size()) / static_cast<double>(coarse.size()));
+}
+
+std::vector<RgbSum> solved(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t lines, std::uint64_t seed,
+                           Progress& progress) {
+    const SolverProblem problem(mesh,
+                                DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress));
+    TransportOptions options;
+    options.method = TransportMethod::LocalLines;
+    options.lines = lines;
+    options.seed = seed;
+    const TransportMatrix matrix = computeMatrix(planTransport(options, mesh, rays, progress), mesh, rays, progress);
+    StoredRows rows(matrix.matrix);
+    return solve(problem, rows, kSolve, progress).irradiance;
+}
+
+/// Sums over the points and channels of fields at them.
+class Norms {
+public:
+    explicit Norms(std::span<const double> weight) : weight_(weight) {
+        for (const double w : weight) total_ += 3.0 * w;
+    }
+    double rms(std::span<const RgbSum> a, std::span<const RgbSum> b) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            const RgbSum d = a[i] - b[i];
+            sum += weight_[i] * (d.x * d.x + d.y * d.y + d.z * d.z);
+        }
+        return std::sqrt(sum / total_);
+    }
+    /// |mean of a − b|.
+    double mean(std::span<const RgbSum> a, std::span<const RgbSum> b) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            const RgbSum d = a[i] - b[i];
+            sum += weight_[i] * (d.x + d.y + d.z);
+        }
+        return std::abs(sum / total_);
+    }
+
+private:
+    std::span<const double> weight_;
+    double total_ = 0.0;
+};
+
+std::vector<RgbSum> combined(double a, std::span<const RgbSum> x, double b, std::span<const RgbSum> y) {
+    std::vector<RgbSum> result(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) result[i] = a * x[i] + b * y[i];
+    return result;
+}
+
+} // namespace
+
+double OwnError::total() const { return std::sqrt(mesh * mesh + transport * transport + gathering * gathering); }
+
+RadiosityReference::RadiosityReference(const MeshedScene& scene, const ReferenceOptions& options, Progress& progress)
+    : scene_(scene) {
+    const auto tell = [&](const std::string& what) {
+        if (options.onStage) options.onStage(what);
+    };
+    const RayCaster& rays = *scene.rays;
+    progress.begin("mesh", 0);
+    PatchMesh coarse = buildPatchMesh(*scene.scene, scaledMesh(scene, options.mesh, 2.0), progress);
+    if (refinement(coarse, scene.mesh) >= kLeastRefinement) levels_.push_back({std::move(coarse), {}});
+    levels_.push_back({scene.mesh, {}});
+    PatchMesh fine = buildPatchMesh(*scene.scene, scaledMesh(scene, options.mesh, 0.5), progress);
+    progress.end();
+    if (fine.size() > scene.mesh.size()) levels_.push_back({std::move(fine), {}});
+
+    const double perPatch = options.lines / static_cast<double>(levels_.back().mesh.size());
+    lines_ =
+        static_cast<std::uint32_t>(std::exp2(std::floor(std::log2(std::clamp(perPatch, kFewestLines, kMostLines)))));
+    std::uint32_t set = 0;
+    const auto solution = [&](const PatchMesh& mesh, std::uint32_t lines) {
+        tell(fmt::format("reference, {} patches, {} lines", mesh.size(), lines));
+        const auto key = philox({set++, 0, 0, 0x52454652}, options.seed);
+        return solved(mesh, rays, lines, std::uint64_t{key[0]} << 32 | key[1], progress);
+    };
+    for (Level& level : levels_) level.irradiance = solution(level.mesh, lines_);
+    fewerLines_ = solution(levels_.back().mesh, static_cast<std::uint32_t>(lines_ / kLineRatio));
+}
+
+std::vector<std::size_t> RadiosityReference::patches() const {
+    std::vector<std::size_t> result;
+    for (const Level& level : levels_) result.push_back(level.mesh.size());
+    return result;
+}
+
+ReferenceLight RadiosityReference::at(std::span<const Receiver> receivers, std::span<const double> weight,
+                                      const PointGatherOptions& options, Progress& progress) const {
+    std::vector<PatchLight> lights;
+    for (const Level& level : levels_) lights.push_back({&level.mesh, level.irradiance});
+    lights.push_back({&levels_.back().mesh, fewerLines_});
+    PointGatherOptions half = options;
+    const auto first = gatherAtPoints(*scene_.rays, lights, receivers, half, progress);
+    half.seed = ~options.seed;
+    const auto second = gatherAtPoints(*scene_.rays, lights, receivers, half, progress);
+
+    const Norms norms(weight);
+    const std::size_t finest = levels_.size() - 1;
+    std::vector<std::vector<RgbSum>> mean;
+    for (std::size_t k = 0; k < lights.size(); ++k) mean.push_back(combined(0.5, first[k], 0.5, second[k]));
+
+    ReferenceLight result;
+    double ahead = 0.0; // by how much of the last difference the extrapolated value lies beyond the finest
+    if (finest > 0) {
+        const double ratio = refinement(levels_[finest - 1].mesh, levels_[finest].mesh);
+        if (finest > 1) {
+            const double before = norms.rms(mean[finest - 1], mean[finest - 2]);
+            const double last = norms.rms(mean[finest], mean[finest - 1]);
+            const double found = last > 0.0 ? std::log(before / last) / std::log(ratio) : kHighestOrder;
+            result.order = std::clamp(found, kLowestOrder, kHighestOrder);
+            result.orderFound = found == result.order;
+        }
+        ahead = 1.0 / (std::pow(ratio, result.order) - 1.0);
+    }
+    const auto extrapolated = [&](const std::vector<std::vector<RgbSum>>& of) {
+        return finest > 0 ? combined(1.0 + ahead, of[finest], -ahead, of[finest - 1]) : of[finest];
+    };
+    result.irradiance = extrapolated(mean);
+
+    // A quarter of the lines has twice the noise: the difference is √5 times that of the finer set. Extrapolation makes it larger,
+    // and adds that of the coarser mesh, which fewer patches average.
+    const double noise = std::sqrt(((1.0 + ahead) * (1.0 + ahead) + kLineRatio * ahead * ahead) / (1.0 + kLineRatio));
+    const auto oneHalf = extrapolated(first);
+    result.rms = {norms.rms(result.irradiance, mean[finest]), noise * norms.rms(mean.back(), mean[finest]),
+                  norms.rms(oneHalf, result.irradiance)};
+    result.mean = {norms.mean(result.irradiance, mean[finest]), noise * norms.mean(mean.back(), mean[finest]),
+                   norms.mean(oneHalf, result.irradiance)};
+    return result;
+}
+
+} // namespace lambert
