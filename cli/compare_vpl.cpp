@@ -11,6 +11,7 @@
 
 #include "comparison/gnuplot.h"
 #include "comparison/instant_radiosity_method.h"
+#include "comparison/vpl_page.h"
 #include "comparison/vpl_report.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -104,7 +105,7 @@ std::vector<double> ladder(const CompareVplArguments& a) {
 }
 
 nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& read, const MeshedScene& scene,
-                              const VplComparison& comparison, double seconds) {
+                              const VplComparison& comparison, const VplPictures& pictures, double seconds) {
     nlohmann::ordered_json json;
     json["scene"] = a.scene.path.string();
     json["patches"] = scene.mesh.size();
@@ -119,7 +120,7 @@ nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& re
     json["seeds"] = a.seeds;
     json["version"] = LAMBERT_VERSION;
     json["seconds"] = seconds;
-    json.update(vplComparisonJson(comparison));
+    json.update(vplComparisonJson(comparison, pictures));
     return json;
 }
 
@@ -143,6 +144,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const MeshedScene scene = meshLitScene(read.scene, mesh, progress);
+    const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
     logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
                                        scene.mesh.size())));
     options.onStage = [&](const std::string& what) { progress.setTitle(what); };
@@ -153,15 +155,30 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     VplComparison comparison = compareVpl(scene, reference, options, progress);
     comparison.referenceSeconds = referenceSeconds;
 
+    PictureOptions pictureOptions;
+    pictureOptions.camera = shot.camera;
+    pictureOptions.width = shot.width;
+    pictureOptions.height = shot.height;
+    pictureOptions.gathering.seed = a.run.seed;
+    const VplPictures pictures = comparePictures(scene, reference, options, pictureOptions, progress);
+
     progress.setTitle("page");
-    const nlohmann::ordered_json json = report(a, read.report, scene, comparison, watch.seconds());
-    std::vector<FileContent> files;
+    const nlohmann::ordered_json json = report(a, read.report, scene, comparison, pictures, watch.seconds());
+    std::vector<FileContent> files =
+        vplPage({a.scene.path.filename().string(),
+                 scene,
+                 comparison,
+                 pictures,
+                 {{"Seeds", fmt::format("{} each, from {}", a.seeds, a.run.seed)},
+                  {"Lambert", fmt::format("version {}, {} threads", LAMBERT_VERSION, threadCount())}}},
+                progress);
     files.push_back({"results.csv", vplComparisonCsv(comparison, a.run.seed)});
     files.push_back({"results.json", jsonText(json)});
     progress.throwIfCancelled();
     writePageFolder(a.output, std::move(files));
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", vplComparisonText(comparison));
+    logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
     return ExitCode::Ok;
 }
 

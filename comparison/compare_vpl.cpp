@@ -95,7 +95,6 @@ private:
 
     void anatomise(VplMethodResult& result) {
         const VplMethod& method = *result.method;
-        const Stopwatch watch;
         std::vector<std::vector<Field>> runs;
         for (int k = 0; k < seedsOf(method); ++k) {
             tell(fmt::format("{}, anatomy, seed {} of {}", method.name(), k + 1, seedsOf(method)));
@@ -107,7 +106,7 @@ private:
         result.anatomy =
             errorAnatomy(result_.points.weight, result_.reference.irradiance, runs, method.approximations(), sampling);
         result.significant = result.anatomy.rms > result_.reference.rms.total();
-        result.anatomySeconds = watch.seconds();
+        result.partSizes = partSizes(result_.reference.irradiance, runs);
     }
 
     const MeshedScene& scene_;

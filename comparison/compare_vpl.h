@@ -44,8 +44,8 @@ struct VplMethodResult {
     std::vector<VplRung> ladder; //!< ascending
     std::size_t main = 0;        //!< the rung of the anatomy
     ErrorAnatomy anatomy;
-    bool significant = true; //!< whether the RMS error there is above the reference's own error
-    double anatomySeconds = 0.0;
+    bool significant = true;                   //!< whether the RMS error there is above the reference's own error
+    std::vector<std::vector<float>> partSizes; //!< see partSizes()
 };
 
 struct VplComparisonOptions {

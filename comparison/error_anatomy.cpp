@@ -1,5 +1,8 @@
 #include "comparison/error_anatomy.h"
 
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -133,7 +136,27 @@ double standardError(const std::vector<Figures>& leaveOneOut, Of of) {
     return std::sqrt((count - 1.0) / count * squares);
 }
 
+float sizeOf(const RgbSum& value) { return static_cast<float>(std::sqrt(glm::dot(value, value) / 3.0)); }
+
 } // namespace
+
+std::vector<std::vector<float>> partSizes(std::span<const RgbSum> reference,
+                                          std::span<const std::vector<std::vector<RgbSum>>> runs) {
+    const auto count = static_cast<double>(runs.size());
+    const std::size_t steps = runs.front().size();
+    std::vector<std::vector<float>> sizes(steps + 1, std::vector<float>(reference.size()));
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        std::vector<RgbSum> mean(steps, RgbSum(0.0));
+        for (const auto& run : runs)
+            for (std::size_t k = 0; k < steps; ++k) mean[k] += run[k][i] / count;
+        RgbSum squares(0.0);
+        for (const auto& run : runs) squares += (run[0][i] - mean[0]) * (run[0][i] - mean[0]);
+        sizes[0][i] = sizeOf(glm::sqrt(squares / std::max(1.0, count - 1.0)));
+        for (std::size_t k = 0; k + 1 < steps; ++k) sizes[k + 1][i] = sizeOf(mean[k] - mean[k + 1]);
+        sizes[steps][i] = sizeOf(mean.back() - reference[i]);
+    }
+    return sizes;
+}
 
 ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference,
                           std::span<const std::vector<std::vector<RgbSum>>> runs,

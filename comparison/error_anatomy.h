@@ -36,6 +36,11 @@ struct ErrorAnatomy {
     ErrorPart left;               //!< what is left unexplained: the reference's error, and what no approximation names
 };
 
+/// The size of each part at each receiver, RMS over the channels, in the fields' unit: of sampling the deviation of one run, of all
+/// others and of what is left the mean over the runs. #approximations + 2 fields; arguments as below.
+std::vector<std::vector<float>> partSizes(std::span<const RgbSum> reference,
+                                          std::span<const std::vector<std::vector<RgbSum>>> runs);
+
 /// `weight` (#receivers, above 0), `reference` (#receivers), `runs` (#runs × #approximations + 1 × #receivers, of independent random
 /// numbers each; at least 3, or 1 for a method without chance). Standard errors are by the jackknife over the runs.
 ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference,

@@ -4,6 +4,7 @@
 #include "comparison/figure_text.h"
 #include "comparison/form_factor_plots.h"
 #include "comparison/html_page.h"
+#include "comparison/page_files.h"
 #include "comparison/scale_bar.h"
 #include "rendering/render.h"
 
@@ -35,7 +36,7 @@ public:
         : in_(input), of_(input.comparison), progress_(progress), page_("Form factors of " + input.scene, subtitle()) {}
 
     std::vector<FileContent> operator()() {
-        page_.figureAndTable({"", picture("scene", scenePicture(), in_.scene), sceneCaption()}, facts());
+        page_.figureAndTable({"", files_.picture("scene", scenePicture(), in_.scene), sceneCaption()}, facts());
         summary();
         if (!of_.methods.empty()) costs();
         plots();
@@ -51,8 +52,8 @@ public:
                  &MethodResult::columnClosure);
         details();
         reading();
-        files_.insert(files_.begin(), {"index.html", page_.text()});
-        return std::move(files_);
+        files_.files.insert(files_.files.begin(), {"index.html", page_.text()});
+        return std::move(files_.files);
     }
 
 private:
@@ -61,15 +62,6 @@ private:
         for (const MethodResult& method : in_.comparison.methods) names.push_back(method.method->name);
         return fmt::format("{} against {}, on {} patches", fmt::join(names, ", "), in_.comparison.reference,
                            in_.meshed.mesh.size());
-    }
-
-    /// Keeps an image as a file and gives it as an element.
-    std::string picture(const std::string& name, const Image& image, const std::string& alternative,
-                        const ColourScale* scale = nullptr) {
-        const Image file = scale != nullptr ? withScaleBar(image, *scale) : image;
-        files_.push_back({name + ".png", encodeImage(file, ImageFormat::Png, 0.0F)});
-        const std::string png = scale != nullptr ? encodeImage(image, ImageFormat::Png, 0.0F) : files_.back().content;
-        return htmlPng(png, image.width, image.height, alternative);
     }
 
     Image scenePicture() {
@@ -198,11 +190,8 @@ private:
     void plots() {
         page_.section("Error against cost");
         std::vector<HtmlFigure> figures;
-        for (const CaptionedPlot& p : formFactorPlots(of_)) {
-            const std::string svg = plotSvg(p.plot, progress_);
-            files_.push_back({p.plot.name + ".svg", svg});
-            figures.push_back({p.title, svg, p.caption});
-        }
+        for (const CaptionedPlot& p : formFactorPlots(of_))
+            figures.push_back({p.title, files_.plot(p.plot, progress_), p.caption});
         page_.figures(figures, 2);
     }
 
@@ -221,7 +210,7 @@ private:
             const std::string title =
                 fmt::format("{} {}", method.method->name, effortNumber(method.efforts.back().effort));
             figures.push_back(
-                {title, picture(name + "_" + method.method->name, image, heading + ": " + title, &scale), ""});
+                {title, files_.picture(name + "_" + method.method->name, image, heading + ": " + title, &scale), ""});
         }
         const std::size_t count = figures.size();
         page_.figures(figures, count == 4 ? 4 : count < 3 ? 2 : 3);
@@ -281,7 +270,7 @@ private:
     const FormFactorComparison& of_;
     Progress& progress_;
     HtmlPage page_;
-    std::vector<FileContent> files_;
+    PageFiles files_;
 };
 
 } // namespace

@@ -8,13 +8,6 @@
 
 namespace lambert {
 
-/// A plot of the comparison, and what is to be said of it.
-struct CaptionedPlot {
-    std::string title;
-    Plot plot;
-    std::string caption;
-};
-
 /// Errors against costs, and errors against the size of the factors; what nothing is known of is left out.
 std::vector<CaptionedPlot> formFactorPlots(const FormFactorComparison& comparison);
 

@@ -44,12 +44,37 @@ th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-h
 .facts td:first-child{color:var(--soft);width:11em}
 tr.rule td{padding:0;border-bottom:2px solid var(--line)}
 td.strong{color:var(--strong);font-weight:650}
+.slider{--at:50%;max-width:768px;margin:14px 0 8px}
+.views{position:relative;overflow:hidden;touch-action:pan-y;cursor:ew-resize;user-select:none}
+.views img{width:100%;pointer-events:none}
+.views img+img{position:absolute;inset:0;clip-path:inset(0 0 0 var(--at))}
+.views i{position:absolute;top:0;bottom:0;left:var(--at);width:2px;margin-left:-1px;background:#fff;box-shadow:0 0 3px #000}
+.views b{position:absolute;top:10px;padding:2px 9px;font-size:13px;font-weight:600;color:#fff;background:#000a;border-radius:3px;left:10px}
+.views b+b{left:auto;right:10px}
+.slider input{display:block;width:100%;margin:10px 0 4px;accent-color:var(--strong)}
 dl{display:grid;grid-template-columns:13em 1fr;gap:7px 20px;margin:0}
 dt{font-weight:600}
 dd{margin:0}
 @media screen and (max-width:820px){.beside,.grid{grid-template-columns:1fr!important}dl{grid-template-columns:1fr}}
 @media print{:root{color-scheme:light;--text:#000;--soft:#444;--line:#bbb;--ground:#fff}body{font-size:10.5pt}main{max-width:none;padding:0}
 figure,tr,dl>*{break-inside:avoid}h2{break-after:avoid}table{font-size:9pt}.wide{overflow:visible}.dense{font-size:7pt}.dense th{font-size:6.5pt}.dense th,.dense td{padding:2px 3px}h2+p{break-after:avoid}@page{margin:13mm}}
+)";
+
+constexpr std::string_view kSliderScript = R"(
+for (const figure of document.querySelectorAll('.slider')) {
+  const range = figure.querySelector('input'), views = figure.querySelector('.views');
+  const show = at => { range.value = 100 * at; figure.style.setProperty('--at', 100 * at + '%'); };
+  const drag = event => {
+    const box = views.getBoundingClientRect();
+    show(Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)));
+  };
+  range.addEventListener('input', () => show(range.value / 100));
+  views.addEventListener('pointerdown', event => { views.setPointerCapture(event.pointerId); drag(event); });
+  views.addEventListener('pointermove', event => { if (event.buttons) drag(event); });
+  const fromAddress = () => { const at = /slider=([0-9.]+)/.exec(location.hash); if (at) show(Math.min(1, +at[1])); };
+  addEventListener('hashchange', fromAddress);
+  fromAddress();
+}
 )";
 
 std::string tableMarkup(const HtmlTable& table, std::string_view style) {
@@ -105,6 +130,16 @@ void HtmlPage::figureAndTable(const HtmlFigure& figure, const HtmlTable& table) 
                          tableMarkup(table, " class=\"facts\""));
 }
 
+void HtmlPage::slider(const HtmlFigure& left, const HtmlFigure& right, std::string_view caption) {
+    slides_ = true;
+    body_ +=
+        fmt::format("<figure class=\"slider\"><div class=\"views\">{}{}<i></i><b>{}</b><b>{}</b></div>\n"
+                    "<input type=\"range\" min=\"0\" max=\"100\" step=\"any\" value=\"50\" aria-label=\"{} to {}\">"
+                    "<figcaption>{}</figcaption></figure>\n",
+                    left.content, right.content, htmlEscaped(left.title), htmlEscaped(right.title),
+                    htmlEscaped(left.title), htmlEscaped(right.title), htmlEscaped(caption));
+}
+
 void HtmlPage::definitions(const std::vector<Definition>& definitions) {
     body_ += "<dl>\n";
     for (const Definition& d : definitions)
@@ -115,8 +150,9 @@ void HtmlPage::definitions(const std::vector<Definition>& definitions) {
 std::string HtmlPage::text() const {
     return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                       "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-                       title_, kStyle, body_);
+                       "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n{}</body>\n</html>\n",
+                       title_, kStyle, body_,
+                       slides_ ? fmt::format("<script>{}</script>\n", kSliderScript) : std::string());
 }
 
 std::string htmlPng(std::string_view png, int width, int height, std::string_view alternative) {

@@ -28,7 +28,7 @@ struct HtmlFigure {
     std::string caption; //!< below it, plain text; or empty
 };
 
-/// A page that is one file: no script, no link to anything outside, light or dark as the reader's system is, fit for a window of
+/// A page that is one file: no script but for sliders, no link to anything outside, light or dark as the reader's system is, fit for a window of
 /// 1280 pixels and for paper. Its parts follow one another in the order of the calls. Names are escaped.
 class HtmlPage {
 public:
@@ -40,6 +40,10 @@ public:
     void figures(const std::vector<HtmlFigure>& figures, int columns);
     /// A figure on the left, a table beside it.
     void figureAndTable(const HtmlFigure& figure, const HtmlTable& table);
+    /// Two pictures of one size in one place, of which a slider shows the left part of one and the right part of the other. `left` and
+    /// `right` have `<img>` elements as content; their titles label the two sides. The page's address may end in #slider=0.3, which puts all
+    /// sliders there.
+    void slider(const HtmlFigure& left, const HtmlFigure& right, std::string_view caption);
     /// A term and what it means, each.
     struct Definition {
         std::string term, meaning;
@@ -50,6 +54,7 @@ public:
 
 private:
     std::string title_, body_;
+    bool slides_ = false;
 };
 
 /// An `<img>` element with the PNG inside. `alternative` is for who cannot see it.

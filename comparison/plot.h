@@ -39,6 +39,13 @@ struct Plot {
     int width = 600; //!< in units of the SVG; the height follows from the legend
 };
 
+/// A plot, and what a page says of it.
+struct CaptionedPlot {
+    std::string title;
+    Plot plot;
+    std::string caption;
+};
+
 /// The plot, which has at least one point to be drawn, as an `<svg>` element for a page: transparent, texts and axes in the colour of the text around it, all ids
 /// beginning with the plot's name. Throws as runGnuplot.
 std::string plotSvg(const Plot& plot, const Progress& progress);

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace lambert {
 
 using Json = nlohmann::ordered_json;
@@ -91,6 +93,15 @@ Json methodJson(const VplMethodResult& result, double mean) {
     return json;
 }
 
+Json pictureJson(const ComparedPicture& picture) {
+    Json json;
+    for (const Column& column : kColumns) json[column.key] = picture.errors.overall.*column.value;
+    json["psnr"] = std::isfinite(picture.psnr) ? Json(picture.psnr) : Json(nullptr);
+    json["flip"] = picture.flip;
+    json["seconds"] = picture.seconds;
+    return json;
+}
+
 Json ownErrorJson(const OwnError& error, double mean) {
     return {{"mesh", error.mesh / mean},
             {"transport", error.transport / mean},
@@ -119,7 +130,7 @@ std::optional<PowerLaw> samplingLaw(const VplMethodResult& method, bool overSeco
     return fitPowerLaw(cost, error);
 }
 
-Json vplComparisonJson(const VplComparison& comparison) {
+Json vplComparisonJson(const VplComparison& comparison, const VplPictures& pictures) {
     const double mean = comparison.meanIrradiance();
     const ReferenceLight& reference = comparison.reference;
     Json json;
@@ -135,7 +146,14 @@ Json vplComparisonJson(const VplComparison& comparison) {
                          {"order_found", reference.orderFound},
                          {"seconds", comparison.referenceSeconds}};
     Json methods = Json::array();
-    for (const VplMethodResult& method : comparison.methods) methods.push_back(methodJson(method, mean));
+    for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
+        methods.push_back(methodJson(comparison.methods[m], mean));
+        methods.back()["picture"] = pictureJson(pictures.methods[m]);
+    }
+    json["picture"] = {{"width", pictures.reference.width},
+                       {"height", pictures.reference.height},
+                       {"exposure_ev", pictures.exposure},
+                       {"own_error", pictures.ownError}};
     json["methods"] = methods;
     return json;
 }

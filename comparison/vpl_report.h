@@ -1,6 +1,6 @@
 #pragma once
 
-#include "comparison/compare_vpl.h"
+#include "comparison/compare_pictures.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -9,7 +9,7 @@
 namespace lambert {
 
 /// The keys `reference` and `methods` of results.json; see docs/compare_vpl.md.
-nlohmann::ordered_json vplComparisonJson(const VplComparison& comparison);
+nlohmann::ordered_json vplComparisonJson(const VplComparison& comparison, const VplPictures& pictures);
 
 /// One line per method, effort and seed, under a line of names.
 std::string vplComparisonCsv(const VplComparison& comparison, std::uint64_t firstSeed);
