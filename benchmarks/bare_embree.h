@@ -15,11 +15,17 @@ public:
     explicit BareEmbree(const Scene& scene, RTCFilterFunctionN filter = nullptr)
         : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
-        auto* indices = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 16, scene.polygons.size()));
-        for (const Polygon& polygon : scene.polygons)
-            for (std::size_t k = 0; k < 4; ++k) *indices++ = polygon.vertices[polygon.isQuad() || k < 3 ? k : 2];
+        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        std::size_t quads = 0;
+        for (const Polygon& polygon : scene.polygons) quads += polygon.isQuad() ? 1 : 0;
+        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.polygons.size() + quads));
+        for (const Polygon& polygon : scene.polygons) {
+            const auto& v = polygon.vertices;
+            for (const std::uint32_t vertex : {v[0], v[1], v[polygon.isQuad() ? 3 : 2]}) *indices++ = vertex;
+            if (!polygon.isQuad()) continue;
+            for (const std::uint32_t vertex : {v[2], v[3], v[1]}) *indices++ = vertex;
+        }
         auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                      RTC_FORMAT_FLOAT3, 12, scene.positions.size()));
         for (const glm::vec3& p : scene.positions)

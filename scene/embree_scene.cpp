@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 namespace lambert {
 
@@ -26,18 +28,19 @@ float scaleToOne(const Bounds& bounds) {
     return std::ldexp(1.0F, std::clamp(-exponent, -120, 120));
 }
 
-RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set, float scale) {
-    const Scene& scene = *set.scene;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+RTCGeometry triangleGeometry(RTCDevice device, const Scene& scene, std::span<const std::uint32_t> halves, float scale) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(std::uint32_t), set.polygons.size()));
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), halves.size()));
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), scene.positions.size()));
     if (indices == nullptr || vertices == nullptr) throw SystemError("not enough memory for the ray caster");
-    for (const std::uint32_t index : set.polygons) {
-        const Polygon& polygon = scene.polygons[index];
+    for (const std::uint32_t half : halves) {
+        const Polygon& polygon = scene.polygons[half >> 1U];
         const auto& v = polygon.vertices;
-        indices = std::copy_n(std::array{v[0], v[1], v[2], polygon.isQuad() ? v[3] : v[2]}.begin(), 4, indices);
+        const std::array first{v[0], v[1], v[polygon.isQuad() ? 3 : 2]};
+        const std::array second{v[2], v[3], v[1]};
+        indices = std::copy_n(((half & 1U) == 0 ? first : second).begin(), 3, indices);
     }
     for (const glm::vec3& position : scene.positions) {
         // Unused vertices may be anything in the file; Embree must not see them.
@@ -49,18 +52,24 @@ RTCGeometry quadGeometry(RTCDevice device, const PolygonSet& set, float scale) {
 
 } // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) : scale_(scaleToOne(boundsOf(scene))) {
+EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters)
+    : scale_(scaleToOne(boundsOf(scene))), anyHoles_(false) {
     device_.reset(rtcNewDevice(nullptr));
     if (device_ == nullptr)
         throw SystemError(
             fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     embree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(handle(), RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
+    std::array<std::vector<std::uint32_t>, 2> halves;  // by GeometryId
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        std::vector<std::uint32_t>& list = halves[hasHoles(scene, scene.polygons[i]) ? kWithHoles : kOpaque];
+        list.push_back(2 * i);
+        if (scene.polygons[i].isQuad()) list.push_back(2 * i + 1);
+    }
+    anyHoles_ = !halves[kWithHoles].empty();
     for (PolygonSet& set : sets_) set.scene = &scene;
-    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i)
-        sets_[hasHoles(scene, scene.polygons[i]) ? kWithHoles : kOpaque].polygons.push_back(i);
-    attach(kOpaque, filters.opaque);
-    attach(kWithHoles, filters.withHoles);
+    attach(kOpaque, std::move(halves[kOpaque]), filters.opaque);
+    attach(kWithHoles, std::move(halves[kWithHoles]), filters.withHoles);
     // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
     // (The device's own "threads" setting would limit oneTBB for the whole program.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(handle()); });
@@ -68,9 +77,14 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) : scale_(sc
         throw SystemError(fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
 }
 
-void EmbreeScene::attach(GeometryId id, RTCFilterFunctionN filter) {
-    if (sets_[id].polygons.empty()) return;
-    RTCGeometry geometry = quadGeometry(device_.get(), sets_[id], scale_);
+void EmbreeScene::attach(GeometryId id, std::vector<std::uint32_t> halves, RTCFilterFunctionN filter) {
+    if (halves.empty()) return;
+    RTCGeometry geometry = triangleGeometry(device_.get(), *sets_[id].scene, halves, scale_);
+    for (std::uint32_t k = 0; k < halves.size(); ++k) {
+        if (halves[k] == k) continue;
+        sets_[id].halves = std::move(halves);
+        break;
+    }
     rtcSetGeometryUserData(geometry, &sets_[id]);
     rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcSetGeometryOccludedFilterFunction(geometry, filter);
@@ -81,9 +95,9 @@ void EmbreeScene::attach(GeometryId id, RTCFilterFunctionN filter) {
 
 bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane) {
     const auto& set = *static_cast<const PolygonSet*>(query.geometryUserPtr);
-    const std::uint32_t polygon = set.polygons[RTCHitN_primID(query.hit, query.N, lane)];
-    return isHole(*set.scene, set.scene->polygons[polygon], RTCHitN_u(query.hit, query.N, lane),
-                  RTCHitN_v(query.hit, query.N, lane));
+    const PolygonHit hit = set.hit(RTCHitN_primID(query.hit, query.N, lane), RTCHitN_u(query.hit, query.N, lane),
+                                   RTCHitN_v(query.hit, query.N, lane));
+    return isHole(*set.scene, set.scene->polygons[hit.polygon], hit.u, hit.v);
 }
 
 float coordinateTolerance(const Bounds& bounds) { return 1e-6F * largestCoordinate(bounds); }

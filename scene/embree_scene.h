@@ -11,14 +11,29 @@
 
 namespace lambert {
 
-/// Polygons of one Embree geometry, which knows them by their place in `polygons`. User data of the geometry.
-struct PolygonSet {
-    const Scene* scene = nullptr;
-    std::vector<std::uint32_t> polygons; //!< into Scene::polygons, ascending
+/// A hit as the scene knows it.
+struct PolygonHit {
+    std::uint32_t polygon;
+    float u, v; //!< see polygonPoint
 };
 
-/// The source polygons of a scene as Embree holds them, all as quads (a triangle repeats its last corner, and its chart is
-/// that of the quad's first half). Only for the casters in this folder.
+/// Polygons of one Embree geometry, as triangles: corners 0, 1, 3 (of a triangle 0, 1, 2) and, of a quad, 2, 3, 1. User data of the
+/// geometry.
+struct PolygonSet {
+    const Scene* scene = nullptr;
+    /// Of Embree's triangles, twice the index into Scene::polygons, and 1 more for a quad's second half; ascending. Empty if it
+    /// would say k of the k-th throughout.
+    std::vector<std::uint32_t> halves;
+
+    std::uint32_t half(unsigned primitive) const { return halves.empty() ? primitive : halves[primitive]; }
+    PolygonHit hit(unsigned primitive, float u, float v) const {
+        const std::uint32_t h = half(primitive);
+        return (h & 1U) == 0 ? PolygonHit{h >> 1U, u, v} : PolygonHit{h >> 1U, 1.0F - u, 1.0F - v};
+    }
+};
+
+/// The source polygons of a scene as Embree holds them: as triangles, which it meets at twice the rate of its own quads. Only for
+/// the casters in this folder.
 ///
 /// Embree divides by products of lengths in single precision and loses hits where these are small, from areas of 1e-20 m²
 /// or, of short rays, 1e-12 m². So it gets all coordinates times a power of two that brings them to the order of 1, which
@@ -40,16 +55,15 @@ public:
     RTCScene handle() const { return embree_.get(); }
     /// What the origins of rays must be multiplied by; in the same unit are the distances of rays of unit directions.
     float scale() const { return scale_; }
-    bool anyHoles() const { return !sets_[kWithHoles].polygons.empty(); }
-    std::uint32_t polygonOf(unsigned geometry, unsigned primitive) const {
-        return anyHoles() ? sets_[geometry].polygons[primitive] : primitive;
-    }
+    const PolygonSet& polygons(unsigned geometry) const { return sets_[geometry]; }
+    /// Of all hits, in scenes without holes; null in others.
+    const PolygonSet* onlyPolygons() const { return anyHoles_ ? nullptr : &sets_[kOpaque]; }
 
 private:
     /// Embree's number of a geometry.
     enum GeometryId : unsigned { kOpaque = 0, kWithHoles = 1 };
 
-    void attach(GeometryId id, RTCFilterFunctionN filter);
+    void attach(GeometryId id, std::vector<std::uint32_t> halves, RTCFilterFunctionN filter);
 
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -57,6 +71,7 @@ private:
     };
 
     float scale_;
+    bool anyHoles_;
     std::array<PolygonSet, 2> sets_; //!< by GeometryId
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> embree_;

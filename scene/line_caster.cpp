@@ -22,28 +22,27 @@ struct Query {
 };
 
 /// Embree's filter: notes every hit and rejects it, so that the traversal goes on to the line's end.
-enum class PolygonNumbers { Embrees, Listed, ListedWithHoles };
-template <PolygonNumbers Numbers>
+template <bool WithHoles>
 void noteCrossing(const RTCFilterFunctionNArguments* arguments) {
     auto& query = *reinterpret_cast<Query*>(arguments->context);
+    const auto& polygons = *static_cast<const PolygonSet*>(arguments->geometryUserPtr);
     RTCHitN* hit = arguments->hit;
     RTCRayN* ray = arguments->ray;
     const unsigned n = arguments->N;
     for (unsigned lane = 0; lane < n; ++lane) {
         if (arguments->valid[lane] == 0) continue;
         arguments->valid[lane] = 0;
-        if constexpr (Numbers == PolygonNumbers::ListedWithHoles) {
+        if constexpr (WithHoles) {
             if (liesInHole(*arguments, lane)) continue;
         }
-        std::uint32_t polygon = RTCHitN_primID(hit, n, lane);
-        if constexpr (Numbers != PolygonNumbers::Embrees)
-            polygon = static_cast<const PolygonSet*>(arguments->geometryUserPtr)->polygons[polygon];
+        const PolygonHit found =
+            polygons.hit(RTCHitN_primID(hit, n, lane), RTCHitN_u(hit, n, lane), RTCHitN_v(hit, n, lane));
         const float facing = RTCHitN_Ng_x(hit, n, lane) * RTCRayN_dir_x(ray, n, lane) +
                              RTCHitN_Ng_y(hit, n, lane) * RTCRayN_dir_y(ray, n, lane) +
                              RTCHitN_Ng_z(hit, n, lane) * RTCRayN_dir_z(ray, n, lane);
         try {
             (*query.crossings)[RTCRayN_id(ray, n, lane)].push_back(
-                {RTCRayN_tfar(ray, n, lane), RTCHitN_u(hit, n, lane), RTCHitN_v(hit, n, lane), polygon, facing < 0.0F});
+                {RTCRayN_tfar(ray, n, lane), found.u, found.v, found.polygon, facing < 0.0F});
         } catch (const std::bad_alloc&) {
             query.outOfMemory = true;
         }
@@ -183,15 +182,7 @@ struct LineCaster::Impl {
         : scene(source),
           bounds(boundsOf(source)),
           tolerance(coordinateTolerance(bounds)),
-          embree(source, filters(source)) {}
-
-    /// Without holes Embree numbers the polygons as the scene does.
-    static EmbreeScene::Filters filters(const Scene& source) {
-        const bool holes = std::any_of(source.polygons.begin(), source.polygons.end(),
-                                       [&](const Polygon& polygon) { return hasHoles(source, polygon); });
-        return {.opaque = holes ? noteCrossing<PolygonNumbers::Listed> : noteCrossing<PolygonNumbers::Embrees>,
-                .withHoles = noteCrossing<PolygonNumbers::ListedWithHoles>};
-    }
+          embree(source, {.opaque = noteCrossing<false>, .withHoles = noteCrossing<true>}) {}
 
     const Scene& scene;
     Bounds bounds;
