@@ -1,6 +1,7 @@
 #pragma once
 
 #include "formfactors/form_factor_method.h"
+#include "formfactors/hemicube_face.h"
 #include "formfactors/viewpoints.h"
 #include "meshing/patch_mesh.h"
 #include "scene/ray_caster.h"
@@ -10,6 +11,9 @@
 
 namespace lambert {
 
+class BlockCover;
+class HitSum;
+
 struct HemicubeOptions {
     int resolution = 128;       //!< pixels along an edge of the top face; even, 4 to 4096
     int perPatch = 1;           //!< hemicubes spread over a patch, 1 to 1024; more for patches with near neighbours
@@ -17,7 +21,8 @@ struct HemicubeOptions {
     std::uint64_t seed = 1;     //!< of the angles and places
 };
 
-/// Form factors from the centre of each patch (or several points of it) through the pixels of a half cube, traced as packets of 4 × 4 pixels.
+/// Form factors from the centre of each patch (or several points of it) through the pixels of a half cube, traced as packets of 4 × 4
+/// pixels. In scenes of few polygons most pixels need no ray: see BlockCover.
 ///
 /// M. F. Cohen, D. P. Greenberg, "The hemi-cube: a radiosity solution for complex environments", SIGGRAPH 1985.
 class Hemicube : public FormFactorMethod {
@@ -41,6 +46,7 @@ public:
 private:
     const PatchMesh& mesh_;
     const RayCaster& rays_;
+    bool fewPolygons_;
     HemicubeOptions options_;
 
     /// 4 × 4 pixels: their delta form factors, the whole hemicube's normalised to the sum 1.
@@ -48,22 +54,10 @@ private:
         alignas(64) float weight[RayPacket::kSize];
         double sum;
     };
+    void addFace(const HemicubeFace& face, const glm::vec3& origin, HitSum& sum) const;
+    void addCoveredFace(const HemicubeFace& face, const glm::vec3& origin, BlockCover& cover, HitSum& sum) const;
     static std::vector<Tile> makeTiles(int resolution, bool top);
     std::vector<Tile> topTiles_, sideTiles_; ///< row by row; the four sides are alike
 };
-
-/// One face of a turned hemicube: the pixel at (u, v) looks along axis + u·axisU + v·axisV.
-struct HemicubeFace {
-    glm::vec3 axis, axisU, axisV;
-    int columns, rows; ///< pixels; u covers [−1, 1], v covers [−1, 1] on the top and [0, 1] on the sides
-    bool top;
-};
-
-/// Top first, then the four sides.
-std::array<HemicubeFace, 5> hemicubeFaces(const glm::vec3& normal, float angle, int resolution);
-
-/// Directions of the tile of 4 × 4 pixels that begins at (column, row), a pixel along a row after the other. Pixels past the
-/// face's end are inactive.
-void tileDirections(const HemicubeFace& face, int column, int row, int resolution, RayPacket& packet);
 
 } // namespace lambert

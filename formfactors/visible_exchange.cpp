@@ -2,9 +2,9 @@
 /// D. Lischinski, F. Tampieri, D. P. Greenberg, "Discontinuity meshing for accurate radiosity", IEEE CG&A 12(6), 1992.
 #include "formfactors/visible_exchange.h"
 
+#include "formfactors/blocking.h"
 #include "formfactors/closed_form.h"
 #include "formfactors/gauss_exchange.h"
-#include "formfactors/blocking.h"
 #include "formfactors/quadrature.h"
 #include "formfactors/visible_parts.h"
 
