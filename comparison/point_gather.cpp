@@ -1,16 +1,12 @@
 #include "comparison/point_gather.h"
 
+#include "comparison/emitter_light.h"
 #include "core/orthonormal_basis.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "core/sample_points.h"
 #include "core/warps.h"
-#include "formfactors/closed_form.h"
-#include "formfactors/patch_sampling.h"
 #include "scene/surface.h"
 #include "solver/direct_light.h"
-
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,49 +16,8 @@ namespace lambert {
 
 namespace {
 
-constexpr std::size_t kMostEmitters = 512; ///< patches that are looked at one by one
-constexpr int kTile = 4;                   ///< cells along an edge; a packet has a ray in each
+constexpr int kTile = 4; ///< cells along an edge; a packet has a ray in each
 static_assert(kTile * kTile == RayPacket::kSize);
-
-/// A patch that emits.
-struct Emitter {
-    std::vector<glm::dvec3> corners;
-    RgbSum radiosity;              ///< B_e
-    std::vector<glm::vec3> points; ///< spread over it, somewhat above
-    glm::dvec3 normal;
-};
-
-bool isTextured(const Scene& scene, const PatchMesh& mesh, std::size_t patch) {
-    return static_cast<bool>(scene.materials[mesh.material[patch]].emissionTexture) ||
-           scene.materials[mesh.material[patch]].hasHoles();
-}
-
-/// Empty where rays shall find the emitters.
-std::vector<Emitter> emittersOf(const PatchMesh& mesh, const RayCaster& rays, const PointGatherOptions& options) {
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        if (mesh.emittedRadiosity[i] == Rgb(0.0F)) continue;
-        if (isTextured(rays.scene(), mesh, i)) return {};
-        patches.push_back(i);
-    }
-    if (patches.size() > kMostEmitters) return {};
-    std::vector<Emitter> emitters;
-    for (const std::uint32_t i : patches) {
-        Emitter emitter;
-        for (int k = 0; k < mesh.cornerCount(i); ++k) emitter.corners.emplace_back(mesh.position(i, k));
-        emitter.radiosity = RgbSum(mesh.emittedRadiosity[i]);
-        emitter.normal = glm::dvec3(mesh.normal[i]);
-        const auto wanted = options.emitterPoints / static_cast<std::uint32_t>(patches.size());
-        const std::uint32_t count = (std::max(wanted, 1U) + RayPacket::kSize - 1) / RayPacket::kSize * RayPacket::kSize;
-        const SamplePoints samples(Sampler::Sobol, count, 2, options.seed + i);
-        const PatchPoints surface(mesh, i);
-        const glm::vec3 above = rays.originOffset(std::sqrt(mesh.area[i])) * mesh.normal[i];
-        for (std::uint32_t k = 0; k < count; ++k)
-            emitter.points.push_back(surface.at({samples.at(k, 0), samples.at(k, 1)}) + above);
-        emitters.push_back(std::move(emitter));
-    }
-    return emitters;
-}
 
 class PointGather {
 public:
@@ -71,14 +26,14 @@ public:
           lights_(lights),
           options_(options),
           direct_(rays, {.skyRays = options.skyRays, .seed = options.seed}),
-          emitters_(emittersOf(*lights.front().mesh, rays, options)) {}
+          emitters_(rays, *lights.front().mesh, options.emitterPoints, options.seed) {}
 
     /// The light of each of the divisions at a point.
     void at(const Receiver& receiver, std::uint32_t index, std::span<RgbSum> sums) const {
         std::fill(sums.begin(), sums.end(), RgbSum(0.0));
         gatherReflected(receiver, index, sums);
         RgbSum same = direct_.irradiance(receiver.position, receiver.normal, index, lightsOf(rays_.scene()));
-        for (const Emitter& emitter : emitters_) same += fromEmitter(receiver, emitter);
+        same += emitters_.irradiance(receiver);
         for (RgbSum& sum : sums) sum += same;
     }
 
@@ -129,8 +84,9 @@ private:
         const SurfaceSide side = sideOf(scene, polygon, front);
         if (!side) return;
         const RgbSum reflectance(reflectanceAt(scene, polygon, side, u, v));
-        const RgbSum emitted =
-            emitters_.empty() ? std::numbers::pi * RgbSum(emittedRadianceAt(scene, polygon, side, u, v)) : RgbSum(0.0);
+        const RgbSum emitted = emitters_.isKnown()
+                                   ? RgbSum(0.0)
+                                   : std::numbers::pi * RgbSum(emittedRadianceAt(scene, polygon, side, u, v));
         for (std::size_t k = 0; k < lights_.size(); ++k) {
             const PatchLookup& lookup = lights_[k].mesh->lookup;
             std::uint32_t patch = lookup.patchAt(hit, u, v);
@@ -139,54 +95,11 @@ private:
         }
     }
 
-    RgbSum fromEmitter(const Receiver& receiver, const Emitter& emitter) const {
-        const glm::dvec3 point(receiver.position);
-        const glm::dvec3 normal(receiver.normal);
-        const double factor = pointToPolygon(point, normal, emitter.corners);
-        return factor > 0.0 ? factor * visibleShare(receiver, emitter) * emitter.radiosity : RgbSum(0.0);
-    }
-
-    /// Of what an emitter sends to the point, by shadow rays to its points, each with the weight cosθ cosθ' / d².
-    double visibleShare(const Receiver& receiver, const Emitter& emitter) const {
-        const glm::vec3 origin = receiver.position + receiver.lift * receiver.normal;
-        ShadowPacket packet;
-        std::fill_n(packet.originX, ShadowPacket::kSize, origin.x);
-        std::fill_n(packet.originY, ShadowPacket::kSize, origin.y);
-        std::fill_n(packet.originZ, ShadowPacket::kSize, origin.z);
-        std::fill_n(packet.maxDistance, ShadowPacket::kSize, 1.0F);
-        double visible = 0.0;
-        double all = 0.0;
-        for (std::size_t first = 0; first < emitter.points.size(); first += ShadowPacket::kSize) {
-            double weight[ShadowPacket::kSize];
-            for (std::size_t lane = 0; lane < ShadowPacket::kSize; ++lane) {
-                const glm::vec3 way = emitter.points[first + lane] - origin;
-                weight[lane] = geometricTerm(receiver, emitter, glm::dvec3(way));
-                packet.directionX[lane] = way.x;
-                packet.directionY[lane] = way.y;
-                packet.directionZ[lane] = way.z;
-                packet.active[lane] = weight[lane] > 0.0 ? -1 : 0;
-            }
-            rays_.occluded(packet);
-            for (std::size_t lane = 0; lane < ShadowPacket::kSize; ++lane) {
-                all += weight[lane];
-                if (!packet.occluded[lane]) visible += weight[lane];
-            }
-        }
-        return all > 0.0 ? visible / all : 0.0;
-    }
-
-    static double geometricTerm(const Receiver& receiver, const Emitter& emitter, const glm::dvec3& way) {
-        const double squared = glm::dot(way, way);
-        const double here = glm::dot(way, glm::dvec3(receiver.normal));
-        const double there = -glm::dot(way, emitter.normal);
-        return here > 0.0 && there > 0.0 ? here * there / (squared * squared) : 0.0;
-    }
-
     const RayCaster& rays_;
     std::span<const PatchLight> lights_;
     const PointGatherOptions options_;
     DirectLight direct_;
-    std::vector<Emitter> emitters_;
+    EmitterLight emitters_;
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "comparison/radiosity_reference.h"
 
+#include "comparison/emitter_light.h"
 #include "core/random.h"
 #include "formfactors/transport.h"
 #include "solver/direct_light.h"
@@ -18,6 +19,8 @@ constexpr double kFewestLines = 1024, kMostLines = 16384; ///< per patch
 constexpr double kLeastRefinement = 1.4;                  ///< of patch lengths from mesh to mesh, where 2 is aimed at
 constexpr double kLowestOrder = 1.0, kHighestOrder = 2.0;
 constexpr double kLineRatio = 4.0; ///< of the two sets of lines
+
+constexpr std::uint32_t kEmitterPoints = 256, kPatchPoints = 16; ///< of direct light, see EmitterLight
 
 /// Small against what is compared.
 constexpr SolverOptions kSolve{.tolerance = 1e-6};
@@ -38,10 +41,22 @@ double refinement(const PatchMesh& coarse, const PatchMesh& fine) {
     return std::sqrt(static_cast<double>(fine.size()) / static_cast<double>(coarse.size()));
 }
 
-std::vector<RgbSum> solved(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t lines, std::uint64_t seed,
+/// The irradiance of the patches. Form factors carry only what is reflected: direct light, of which lines that meet small
+/// emitters would give a noisy account, is found for itself.
+std::vector<RgbSum> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, std::uint64_t seed,
                            Progress& progress) {
-    const SolverProblem problem(mesh,
-                                DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress));
+    std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
+    const EmitterLight emitters(rays, mesh, kEmitterPoints, seed);
+    if (emitters.isKnown()) {
+        const std::vector<RgbSum> emitted = emitters.irradiance(mesh, kPatchPoints, seed);
+        for (std::size_t i = 0; i < mesh.size(); ++i) direct[i] += emitted[i];
+        std::fill(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), Rgb(0.0F));
+    }
+    const auto isDark = [](const auto& light) { return light.x + light.y + light.z == 0; };
+    if (std::all_of(direct.begin(), direct.end(), isDark) &&
+        std::all_of(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), isDark))
+        return direct; // lamps that nothing sees
+    const SolverProblem problem(mesh, std::move(direct));
     TransportOptions options;
     options.method = TransportMethod::LocalLines;
     options.lines = lines;
