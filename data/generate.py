@@ -328,11 +328,75 @@ def window_room():
                  lights=lights)
 
 
+# ---- Rooms that are hard for virtual point lights
+
+def rectangle(axis, at, low, high, material, up):
+    """A rectangle across an axis, `low` and `high` being its corners in the other two, in the order x y z; its front points up the
+    axis, or else down."""
+    (a0, b0), (a1, b1) = low, high
+    corners = [(a0, b0), (a1, b0), (a1, b1), (a0, b1)]
+    points = [(*corner[:axis], at, *corner[axis:]) for corner in corners]
+    return (material, points if up == (axis != 1) else points[::-1])
+
+
+def corridor():
+    """A lit room, and a corridor along it that gets all its light through a door."""
+    wide, deep, height, wall, far = 3, 4, 2.5, .15, 4.4
+    door = ((0, 1.5), (2.05, 2.4))  # y and z
+    names = {"x0": "room_wall", "y0": "floor", "y1": "ceiling", "z0": "room_wall", "z1": "room_wall"}
+    room = [face for face in box((0, 0, 0), (wide, height, deep), lambda side: names.get(side, ""), inward=True) if face[0]]
+    names = {"x1": "wall", "y0": "floor", "y1": "ceiling", "z0": "wall", "z1": "wall"}
+    hall = [face for face in box((wide + wall, 0, -2), (far, height, 6), lambda side: names.get(side, ""), inward=True)
+            if face[0]]
+
+    def wall_with_door(x, z0, z1, material, up):
+        (y0, left), (top, right) = door
+        return [rectangle(0, x, (y0, z0), (height, left), material, up),
+                rectangle(0, x, (y0, right), (height, z1), material, up),
+                rectangle(0, x, (top, left), (height, right), material, up)]
+    room += wall_with_door(wide, 0, deep, "room_wall", False)
+    hall += wall_with_door(wide + wall, -2, 6, "wall", True)
+    (y0, left), (top, right) = door
+    names = {"y0": "floor"}
+    frame = box((wide, y0, left), (wide + wall, top, right), lambda side: names.get(side, "frame"), inward=True)[2:]
+    materials = {"room_wall": Material((.75, .6, .4)), "wall": Material((.7, .72, .75)), "floor": Material((.4, .35, .3)),
+                 "ceiling": Material((.8, .8, .8)), "frame": Material((.55, .4, .3)), "lamp": Material((.7, .7, .7), (40, 36, 30))}
+    lamp = box((1.2, height - .05, 1.7), (1.8, height, 2.3), lambda side: "lamp" if side == "y0" else "frame")
+    meshes = {"room": [room], "corridor": [hall], "door": [frame], "lamp": [lamp]}
+    return Scene("corridor",
+                 ["Metres. A room of 3 x 4 x 2.5 m with a lamp, and a corridor of 8 m along it behind a wall of 15 cm:",
+                  "all its light comes through a door of 0.9 x 2.05 m."],
+                 materials, meshes, [Node(name, name) for name in meshes],
+                 Camera((3.75, 1.6, 5.7), (3.6, 1.1, 1.2), math.radians(65), 1.333333))
+
+
+def cove_room():
+    """A room lit from a cove: all light comes out of a gap below the ceiling."""
+    wide, height, deep = 4, 2.5, 3
+    shelf, gap, depth, strip = 2.3, .15, .3, .08
+    names = {"y0": "floor", "y1": "ceiling", "x1": "wall_end"}
+    room = box((0, 0, 0), (wide, height, deep), lambda side: names.get(side, "wall"), inward=True)[1:]
+    room += [rectangle(0, 0, (0, 0), (shelf, deep), "wall", True), rectangle(0, 0, (height - gap, 0), (height, deep), "wall", True)]
+    cove = [rectangle(1, height - gap, (0, 0), (strip, deep), "lamp", True),
+            rectangle(1, height - gap, (strip, 0), (depth, deep), "shelf", True),
+            rectangle(0, depth, (shelf, 0), (height - gap, deep), "shelf", True),
+            rectangle(1, shelf, (0, 0), (depth, deep), "shelf", False)]
+    materials = {"wall": Material((.7, .69, .66)), "wall_end": Material((.6, .3, .24)), "floor": Material((.45, .33, .22)),
+                 "ceiling": Material((.82, .82, .8)), "shelf": Material((.75, .75, .75)), "lamp": Material((.6, .6, .6), (60, 52, 40))}
+    meshes = {"room": [room], "cove": [cove]}
+    return Scene("cove_room",
+                 ["Metres. A closed room of 4 x 2.5 x 3 m that is lit from a cove: a strip of light on a shelf, 15 cm below the",
+                  "ceiling, along one wall. What leaves the gap has been reflected in it."],
+                 materials, meshes, [Node(name, name) for name in meshes],
+                 Camera((3.8, 1.5, 2.7), (.6, 1.4, 1.2), math.radians(65), 1.333333))
+
+
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
     return [(cornell_box(), (*both, "mgf")), (furnace_box(), (*both, "ply", "stl")), (table_room(), (*both, "mgf")),
-            (textured_room(), both), (window_room(), ("gltf",)),
+            (textured_room(), both), (window_room(), ("gltf",)), (corridor(), ("gltf",)),
+            (cove_room(), ("gltf",)),
             *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
 
 
