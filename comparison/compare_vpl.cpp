@@ -103,8 +103,8 @@ private:
         }
         const Approximation sampling{"sampling", fmt::format("{} particles", countText(options_.effort)),
                                      fmt::format("mean over {} runs", runs.size() - 1)};
-        result.anatomy =
-            errorAnatomy(result_.points.weight, result_.reference.irradiance, runs, method.approximations(), sampling);
+        result.anatomy = errorAnatomy(result_.points.weight, result_.reference.irradiance,
+                                      result_.reference.rms.total(), runs, method.approximations(), sampling);
         result.significant = result.anatomy.rms > result_.reference.rms.total();
         result.partSizes = partSizes(result_.reference.irradiance, runs);
     }

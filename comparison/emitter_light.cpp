@@ -15,7 +15,7 @@ namespace lambert {
 
 namespace {
 
-constexpr std::size_t kMostEmitters = 512; ///< patches
+constexpr std::size_t kMostEmitters = 64; ///< patches; where there are more, rays meet enough of them
 
 bool isTextured(const Scene& scene, const PatchMesh& mesh, std::size_t patch) {
     const Material& material = scene.materials[mesh.material[patch]];

@@ -15,7 +15,7 @@ namespace lambert {
 ///     E(x) = Σ_e F(x, e) V̄ B_e,   V̄ = Σ_k G_k V_k / Σ_k G_k
 ///
 /// F in closed form (see pointToPolygon), V̄ the visible share by shadow rays to points of the emitter: exact where all or nothing of
-/// an emitter is seen. Not for emitters with textures or of more than some hundred patches; these are better found by rays.
+/// an emitter is seen. Not for emitters with textures or of more than 64 patches; these are better found by rays.
 class EmitterLight {
 public:
     /// `rays`, of the scene of `mesh`, must outlive it. `points` on all emitters together; a patch gets 16 at least.

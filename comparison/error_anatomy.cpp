@@ -158,7 +158,7 @@ std::vector<std::vector<float>> partSizes(std::span<const RgbSum> reference,
     return sizes;
 }
 
-ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference,
+ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference, double ownError,
                           std::span<const std::vector<std::vector<RgbSum>>> runs,
                           std::span<const Approximation> approximations, const Approximation& sampling) {
     const Products products(weight);
@@ -189,6 +189,8 @@ ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum
     anatomy.parts.push_back(part(0, sampling));
     for (std::size_t k = 0; k < approximations.size(); ++k) anatomy.parts.push_back(part(k + 1, approximations[k]));
     anatomy.left = part(approximations.size() + 1, {"unexplained", "", ""});
+    // |(e, δ)| / |e|² is at most |δ| / |e|.
+    if (anatomy.rms > 0.0) anatomy.left.shareError = std::hypot(anatomy.left.shareError, ownError / anatomy.rms);
     return anatomy;
 }
 

@@ -42,8 +42,9 @@ std::vector<std::vector<float>> partSizes(std::span<const RgbSum> reference,
                                           std::span<const std::vector<std::vector<RgbSum>>> runs);
 
 /// `weight` (#receivers, above 0), `reference` (#receivers), `runs` (#runs × #approximations + 1 × #receivers, of independent random
-/// numbers each; at least 3, or 1 for a method without chance). Standard errors are by the jackknife over the runs.
-ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference,
+/// numbers each; at least 3, or 1 for a method without chance). Standard errors are by the jackknife over the runs; that of what is
+/// left holds also what `ownError`, the RMS error of the reference, can contribute at most.
+ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum> reference, double ownError,
                           std::span<const std::vector<std::vector<RgbSum>>> runs,
                           std::span<const Approximation> approximations, const Approximation& sampling);
 

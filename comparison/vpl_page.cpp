@@ -173,7 +173,10 @@ private:
         bars.back().rest = true;
         const std::string svg = shareBarsSvg(bars, "shares of the squared error");
         files_.files.push_back({"anatomy_" + method.method->name() + ".svg", svg});
-        page_.figures({{"Share of the squared error", svg, "Thin lines: one standard error, over the seeds."}}, 1);
+        page_.figures({{"Share of the squared error", svg,
+                        "Thin lines: one standard error over the seeds; of what is left also the most that the error "
+                        "of the reference can add."}},
+                      1);
         page_.table(table);
     }
 

@@ -59,7 +59,7 @@ struct KnownCase {
     }
     ErrorAnatomy anatomy() const {
         const std::vector<Approximation> approximations{{"first", "", ""}, {"second", "", ""}};
-        return errorAnatomy(weight, reference, runs, approximations, {"sampling", "", ""});
+        return errorAnatomy(weight, reference, 0.0, runs, approximations, {"sampling", "", ""});
     }
 };
 
