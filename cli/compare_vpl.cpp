@@ -45,6 +45,7 @@ struct CompareVplArguments {
     std::string walk = "quasi";
     std::uint32_t bounces = 4;
     std::string clamp = "10";
+    std::string visibility = "exact";
     bool compensate = false;
 };
 
@@ -62,6 +63,7 @@ Method instantRadiosity(const CompareVplArguments& a) {
     choice.walk = a.walk == "quasi" ? Walk::Quasi : a.walk == "roulette" ? Walk::Roulette : Walk::Fixed;
     choice.bounces = a.bounces;
     choice.bound = bound(a.clamp);
+    choice.indirectShadows = a.visibility == "exact";
     choice.compensate = a.compensate;
     return std::make_shared<InstantRadiosityMethod>(choice);
 }
@@ -115,6 +117,7 @@ nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& re
     if (a.walk == "fixed") json["options"]["vpl_bounces"] = a.bounces;
     json["options"]["clamp"] = a.clamp;
     json["options"]["compensate"] = a.compensate;
+    json["options"]["visibility"] = a.visibility;
     json["options"]["threads"] = threadCount();
     json["seed"] = a.run.seed;
     json["seeds"] = a.seeds;
@@ -221,6 +224,11 @@ void addCompareVpl(CLI::App& compare, CommandRun& run) {
     command
         .add_option("--clamp", a.clamp, "Bound of the geometric term, in units of 6 / area of the scene; or none [10]")
         ->type_name("G|none")
+        ->group("Method");
+    command
+        .add_option("--visibility", a.visibility,
+                    "Of reflected light: exact, by shadow rays, or none, to see what leaving it out costs [exact]")
+        ->check(CLI::IsMember({"exact", "none"}))
         ->group("Method");
     command.add_flag("--compensate", a.compensate, "Recovers what the bound takes away (Kollig, Keller 2004)")
         ->group("Method");

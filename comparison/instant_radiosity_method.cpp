@@ -35,6 +35,12 @@ std::vector<VirtualPointLight> raised(std::span<const VirtualPointLight> lights)
     return result;
 }
 
+/// Those on emitters keep their shadows, as with a shadow map.
+std::vector<VirtualPointLight> withoutIndirectShadows(std::vector<VirtualPointLight> lights) {
+    for (VirtualPointLight& light : lights) light.castsShadows = light.bounce == 0;
+    return lights;
+}
+
 const char* nameOf(Walk walk) { return walk == Walk::Quasi ? "quasi" : walk == Walk::Roulette ? "roulette" : "fixed"; }
 
 } // namespace
@@ -52,7 +58,9 @@ std::vector<std::pair<std::string, std::string>> InstantRadiosityMethod::options
     if (choice_.walk == Walk::Fixed) walk += fmt::format(", {} bounces", choice_.bounces);
     std::string bound = clamps() ? fmt::format("{:g}/ℓ²", choice_.bound) : "none";
     if (clamps() && choice_.compensate) bound += fmt::format(", compensated by {} rays", choice_.recoveryRays);
-    return {{"walk", walk}, {"bound of the geometric term", bound}};
+    return {{"walk", walk},
+            {"bound of the geometric term", bound},
+            {"indirect shadows", choice_.indirectShadows ? "by rays" : "none"}};
 }
 
 VirtualPointLights InstantRadiosityMethod::trace(const RayCaster& rays, double effort, std::uint64_t seed,
@@ -71,15 +79,20 @@ GatherOptions InstantRadiosityMethod::gathering(bool compensated, std::uint64_t 
 
 MethodLight InstantRadiosityMethod::light(const RayCaster& rays, std::span<const Receiver> receivers, double effort,
                                           std::uint64_t seed, Progress& progress) const {
-    const VirtualPointLights traced = trace(rays, effort, seed, progress);
+    VirtualPointLights traced = trace(rays, effort, seed, progress);
+    if (!choice_.indirectShadows) traced.lights = withoutIndirectShadows(std::move(traced.lights));
     Gathered gathered = gatherIrradiance(rays, traced.lights, receivers, gathering(choice_.compensate, seed), progress);
     return {std::move(gathered.irradiance), traced.lights.size(),
             traced.rays + gathered.shadowRays + gathered.recoveryRays};
 }
 
 std::vector<Approximation> InstantRadiosityMethod::approximations() const {
+    const Approximation visibility =
+        choice_.indirectShadows
+            ? Approximation{"visibility", "shadow rays, begun off the surfaces", "without that gap (extrapolated)"}
+            : Approximation{"visibility", "none of reflected light", "shadow rays"};
     return {
-        {"visibility", "shadow rays, begun off the surfaces", "without that gap (extrapolated)"},
+        visibility,
         {"clamping",
          clamps() ? choice_.compensate ? "bounded and compensated" : fmt::format("G ≤ {:g}/ℓ²", choice_.bound) : "none",
          clamps() && !choice_.compensate ? fmt::format("compensated by {} rays", choice_.recoveryRays)
@@ -97,10 +110,16 @@ std::vector<Field> InstantRadiosityMethod::exchanged(const RayCaster& rays, std:
     const auto gather = [&](std::span<const VirtualPointLight> lights, std::span<const Receiver> at, bool compensated) {
         return gatherIrradiance(rays, lights, at, gathering(compensated, seed), progress).irradiance;
     };
-    std::vector<Field> fields{gather(traced.lights, receivers, choice_.compensate)};
-
-    const Field bounded = choice_.compensate ? gather(traced.lights, receivers, false) : fields[0];
-    fields.push_back(moved(fields[0], -1.0, gather(raised(traced.lights), raised(receivers), false), bounded));
+    std::vector<Field> fields;
+    if (choice_.indirectShadows) {
+        fields.push_back(gather(traced.lights, receivers, choice_.compensate));
+        const Field bounded = choice_.compensate ? gather(traced.lights, receivers, false) : fields[0];
+        const Field higher = gather(raised(traced.lights), raised(receivers), false);
+        fields.push_back(moved(fields[0], -1.0, higher, bounded));
+    } else {
+        fields.push_back(gather(withoutIndirectShadows(traced.lights), receivers, choice_.compensate));
+        fields.push_back(gather(traced.lights, receivers, choice_.compensate));
+    }
 
     fields.push_back(fields.back());
     if (clamps() && !choice_.compensate) {

@@ -10,6 +10,7 @@ struct InstantRadiosityChoice {
     Walk walk = Walk::Quasi;
     std::uint32_t bounces = 4;       //!< of fixed walks
     double bound = 10.0;             //!< see GatherOptions
+    bool indirectShadows = true;     //!< false: lights that stand for reflected light shine through everything
     bool compensate = false;         //!< what the bound takes away is recovered
     std::uint32_t recoveryRays = 64; //!< per receiver, to compensate or to see what compensation would bring
 };

@@ -197,7 +197,7 @@ int castShadows(const RayCaster& rays, Bundle& bundle, Block& block) {
 int addVirtualLight(const RayCaster& rays, const VirtualPointLight& light, float largest, Block& block) {
     geometricTerms(light, block);
     BundleFrom bundle(block, light.position + light.lift * light.normal);
-    const int count = castShadows(rays, bundle, block);
+    const int count = light.castsShadows ? castShadows(rays, bundle, block) : 0;
     const glm::vec3 share = light.flux / std::numbers::pi_v<float>;
     addLight(share, largest, block);
     if (largestTermOf(block) > largest) addCut(share, largest, block);

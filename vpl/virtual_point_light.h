@@ -16,6 +16,7 @@ struct VirtualPointLight {
     Rgb flux{0.0F};           //!< Φ
     std::uint32_t bounce = 0; //!< reflections behind it; 0: on an emitter
     float lift = 0.0F;        //!< its shadow rays start so far above the surface, metres
+    bool castsShadows = true; //!< false: shines through everything, as methods have it that leave indirect shadows out
 };
 
 } // namespace lambert

@@ -17,6 +17,7 @@ struct Choice {
     std::size_t patches = 300;
     double vpls = 512.0;
     int seeds = 8;
+    double lines = 2e7; //!< of the reference
 };
 
 VplComparison compared(const std::string& name, const InstantRadiosityChoice& method, const Choice& choice) {
@@ -26,6 +27,7 @@ VplComparison compared(const std::string& name, const InstantRadiosityChoice& me
     const MeshedScene scene = meshLitScene(readScene(LAMBERT_DATA "/" + name).scene, mesh, progress);
     ReferenceOptions referenceOptions;
     referenceOptions.mesh = mesh;
+    referenceOptions.lines = choice.lines;
     const RadiosityReference reference(scene, referenceOptions, progress);
     VplComparisonOptions options;
     options.methods = {std::make_shared<InstantRadiosityMethod>(method)};
@@ -74,15 +76,14 @@ TEST(Anatomy, FurnaceLacksExactlyTheBouncesThatAreCutOff) {
 }
 
 // The bound takes from cube6's mean irradiance what the independent table says. The mean is that of 16 × 16 patches' centres on each wall,
-// and what the bound takes rises steeply to the edges: the midpoint rule is off by 0.003 at most for these wide bounds (of 12 × 12
-// patches by half as much again).
+// and what the bound takes rises steeply to the edges: the midpoint rule is off by 0.003 at most for these wide bounds.
 TEST(Anatomy, ClampingTakesFromCube6WhatTheIndependentTableSays) {
     nlohmann::json analytic;
     std::ifstream(LAMBERT_DATA "/reference/analytic.json") >> analytic;
     const nlohmann::json table = analytic["vpl_clamp: loss of mean irradiance in cube6 for G<=b, infinitely many VPLs"];
     for (const std::string bound : {".5", "1"}) {
-        const VplComparison comparison =
-            compared("cube6.obj", {.bound = std::stod(bound)}, {.patches = 1500, .vpls = 1024});
+        const VplComparison comparison = compared("cube6.obj", {.bound = std::stod(bound), .recoveryRays = 16},
+                                                  {.patches = 1500, .vpls = 256, .seeds = 6});
         print("cube6, G <= " + bound, comparison);
         const ErrorAnatomy& anatomy = comparison.methods.front().anatomy;
         expectWhole(anatomy);
@@ -100,6 +101,23 @@ TEST(Anatomy, ClampingOwnsTheErrorOfARoomLitFromACove) {
     const ErrorAnatomy& anatomy = comparison.methods.front().anatomy;
     expectWhole(anatomy);
     EXPECT_GT(part(anatomy, "clamping").share, 0.9);
+}
+
+// The corridor's light has come through a door; without shadows it comes through the wall.
+TEST(Anatomy, VisibilityOwnsTheErrorOfACorridorWithoutIndirectShadows) {
+    const VplComparison comparison = compared("corridor.gltf", {.indirectShadows = false}, {});
+    print("corridor without indirect shadows", comparison);
+    const ErrorAnatomy& anatomy = comparison.methods.front().anatomy;
+    expectWhole(anatomy);
+    EXPECT_GT(part(anatomy, "visibility").share, 0.5); // more than all others together
+}
+
+// In a convex room there is nothing that shadows could be of.
+TEST(Anatomy, VisibilityIsNothingInAConvexRoom) {
+    const VplComparison comparison = compared("cube6.obj", {.indirectShadows = false}, {.vpls = 256});
+    const ErrorAnatomy& anatomy = comparison.methods.front().anatomy;
+    expectWhole(anatomy);
+    EXPECT_LT(part(anatomy, "visibility").rms, 1e-5 * comparison.meanIrradiance()); // rays slip through an edge
 }
 
 TEST(Anatomy, SamplingOwnsTheErrorOfCompensatedLightInTheCornellBox) {
