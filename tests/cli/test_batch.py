@@ -69,7 +69,7 @@ class TwelveScenesThreeBroken(BatchTest):
         self.library("b/")
         names = [f"{'b/' if k > 6 else ''}{k:02}" for k in range(1, 13)]
         for k, name in enumerate(names, 1):
-            self.write(f"scenes/{name}.obj", box(4 if k == 4 else 0.5 + 0.05 * k))
+            self.write(f"scenes/{name}.obj", box(7 if k == 4 else 0.5 + 0.05 * k))
         self.write("scenes/02.obj", "v 0 0 0\nv 1 x 0\n")
         (self.scenes / "b/07.obj").unlink()
         self.write("scenes/b/07.gltf", '{"asset": {"version": "2.0"}, "scenes": [')
@@ -111,7 +111,7 @@ class TwelveScenesThreeBroken(BatchTest):
         self.batch(INPUT, "scenes", "--output-dir", "whole")
         with self.start("--output-dir", "parts", "--json", "report.json") as process:
             try:
-                # The fourth is read, and its 2400 patches are ahead.
+                # The fourth is read, and its 7400 patches are ahead.
                 while not process.stderr.readline().startswith("[4/12]"):
                     self.assertIsNone(process.poll())
                 process.send_signal(signal.SIGINT)

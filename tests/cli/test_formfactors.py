@@ -286,7 +286,7 @@ class Points(FormFactorsTest):
 
 
 class Checkpoints(FormFactorsTest):
-    WORK = (CORNELL, "--patches", 1500, "--resolution", 128, "--quiet")
+    WORK = (CORNELL, "--patches", 3000, "--resolution", 128, "--quiet")
 
     def stop(self, number, checkpoint, target):
         """Starts the work and ends it by a signal once rows are in the file."""
@@ -339,7 +339,7 @@ class Checkpoints(FormFactorsTest):
 
     def test_bakes_go_on_too(self):
         checkpoint, baked = self.folder / "rows", self.folder / "box.ply"
-        work = ("bake", CORNELL, "--patches", 1500, "--quiet")
+        work = ("bake", CORNELL, "--patches", 3000, "--quiet")
         self.run_well(*work, "-o", self.folder / "whole.ply")
         self.stop(signal.SIGKILL, checkpoint, self.folder / "m.npy")
         self.run_well(*work, "-o", baked, "--resolution", 128, "--checkpoint", checkpoint, "--resume")
