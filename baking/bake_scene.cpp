@@ -129,6 +129,16 @@ void solveWithLines(const BakeOptions& options, const Task& task, BakedScene& re
     result.seconds.solve = watch.lap();
 }
 
+/// Without form factors or solver.
+void solveWithVirtualLights(const BakeOptions& options, const Task& task, BakedScene& result, Progress& progress) {
+    Stopwatch watch;
+    result.instantRadiosity =
+        solveInstantRadiosity(task.problem, *result.rays, options.instantRadiosity.value(), progress);
+    result.solution = std::move(static_cast<RadiositySolution&>(*result.instantRadiosity));
+    result.rayCount = result.instantRadiosity->rays;
+    result.seconds.solve = watch.lap();
+}
+
 std::string checksumOf(const FormFactorMatrix& matrix) {
     Checksum sum;
     std::vector<std::byte> row;
@@ -215,7 +225,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.seconds.directLight = watch.lap();
     std::vector<RgbSum> start;
     if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh);
-    const auto solveBy = usesLines(options.solver.method)       ? solveWithLines
+    const auto solveBy = options.instantRadiosity               ? solveWithVirtualLights
+                         : usesLines(options.solver.method)     ? solveWithLines
                          : options.formFactors.transport.stored ? solveStored
                                                                 : solveComputed;
     solveBy(options, {problem, start}, result, progress);

@@ -7,6 +7,7 @@
 #include "solver/direct_light.h"
 #include "solver/line_solvers.h"
 #include "solver/solver.h"
+#include "vpl/instant_radiosity.h"
 
 #include <memory>
 #include <optional>
@@ -21,7 +22,8 @@ struct BakeOptions {
     MatrixSource formFactors;
     DirectLightOptions directLight;
     SolverOptions solver;
-    LineSolverOptions lineSolver;      //!< where solver.method usesLines(): instead of form factors
+    LineSolverOptions lineSolver; //!< where solver.method usesLines(): instead of form factors
+    std::optional<InstantRadiosityOptions> instantRadiosity{}; //!< instead of form factors and solver
     std::filesystem::path warmStart{}; //!< a solution of the same patches that the solver begins from; empty: none
     ReconstructionOptions reconstruction;
     bool perLight = false; //!< each group of lights on its own as well, see bakePerLight
@@ -47,6 +49,7 @@ struct BakedScene : MeshedScene {
     RadiositySolution solution{};
     /// What a solver by lines knows beyond the solution, which is moved out of it.
     std::optional<StochasticSolution> stochastic{};
+    std::optional<InstantRadiosity> instantRadiosity{}; //!< the same, of light by virtual point lights
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
@@ -54,7 +57,7 @@ struct BakedScene : MeshedScene {
     std::optional<RepairReport> repair{};           //!< of the form factors; none: not repaired
     std::unique_ptr<MatrixJournal> journal{};       //!< see SceneMatrix
     std::unique_ptr<SolverCheckpoint> checkpoint{}; //!< to be removed once the result is on the disk
-    std::uint64_t rayCount = 0;                     //!< of the form factors
+    std::uint64_t rayCount = 0;                     //!< of the form factors, or of what found the light without them
     RowQuality rows{};
     std::size_t separatedFaces = 0;
     BakeSeconds seconds{};

@@ -23,6 +23,11 @@ constexpr double kSecondsPerRay = 2e-7;   // of pictures, one thread, where the 
 constexpr double kBytesPerPatch = 1000.0; // solution, reconstruction and the files' bytes
 constexpr double kBytesPerRow = 32.0;     // the allocator's, and what rounding up costs
 
+// Of instant radiosity.
+constexpr std::uint32_t kPilotParticles = 1024;
+constexpr std::size_t kPilotReceivers = 4096; ///< at a time: few would be far from each other
+constexpr double kBytesPerReceiver = 150.0, kBytesPerLight = 250.0;
+
 struct Pilot {
     std::size_t rows = 0;
     double seconds = 0.0;
@@ -32,15 +37,17 @@ struct Pilot {
 
 double brightestChannel(const Rgb& rgb) { return static_cast<double>(std::max({rgb.x, rgb.y, rgb.z})); }
 
+/// The k-th of indices below `count` that are spread evenly however many of them there are: multiples of the golden ratio, modulo 1.
+std::size_t spreadIndex(std::size_t k, std::size_t count) {
+    const double at = 0.6180339887498949 * static_cast<double>(k);
+    return static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(count));
+}
+
 /// Rows of patches spread over the mesh, until they have taken long enough to be timed, or are all.
 Pilot pilotRows(const MeshedScene& scene, const FormFactorMethod& method, Progress& progress) {
     const std::size_t count = method.patchCount();
     const auto batch = static_cast<std::size_t>(16 * threadCount());
-    // Multiples of the golden ratio, modulo 1, are spread evenly however many there are.
-    const auto patch = [count](std::size_t k) {
-        const double at = 0.6180339887498949 * static_cast<double>(k);
-        return static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(count));
-    };
+    const auto patch = [count](std::size_t k) { return spreadIndex(k, count); };
     std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()), RowAccumulator(count));
     std::vector<FormFactorRow> rows(batch);
     Pilot pilot;
@@ -88,6 +95,50 @@ double predictPasses(double reflected, const SolverOptions& options) {
     return jacobi;
 }
 
+/// Of the light without area, about.
+double directRays(const MeshedScene& meshed, const DirectLightOptions& options) {
+    return static_cast<double>(meshed.mesh.size()) *
+           (static_cast<double>(meshed.scene->lights.size()) * options.points +
+            (meshed.scene->environment ? static_cast<double>(options.skyRays) : 0.0));
+}
+
+void predictInstantRadiosity(const MeshedScene& meshed, const BakeOptions& bake, BakePrediction& result,
+                             Progress& progress) {
+    InstantRadiosityOptions options = bake.instantRadiosity.value();
+    const std::uint32_t points = pointsPerPatch(options, meshed.mesh.size());
+    const double wanted = options.trace.particles;
+    options.trace.particles = std::min(options.trace.particles, kPilotParticles);
+    options.gather.direct = false;
+    Stopwatch watch;
+    const VirtualPointLights some = traceLights(*meshed.rays, options.trace, progress);
+    const double more = wanted / options.trace.particles;
+    const double traceSeconds = more * watch.lap();
+
+    const std::vector<Receiver> all = patchReceivers(meshed.mesh, *meshed.rays, points, options.trace.seed);
+    std::size_t done = 0;
+    double rays = 0.0;
+    const Stopwatch gathering;
+    do {
+        std::vector<Receiver> receivers;
+        for (std::size_t k = done; k < std::min(done + kPilotReceivers, all.size()); ++k)
+            receivers.push_back(all[spreadIndex(k, all.size())]);
+        const Gathered gathered = gatherIrradiance(*meshed.rays, some.lights, receivers, options.gather, progress);
+        rays += static_cast<double>(gathered.shadowRays + gathered.recoveryRays);
+        done += receivers.size();
+    } while (gathering.seconds() < kPilotSeconds && done < all.size());
+    const double scale = more * static_cast<double>(all.size()) / static_cast<double>(done);
+
+    result.rays = static_cast<std::uint64_t>(more * static_cast<double>(some.rays) + scale * rays);
+    result.secondsPerRay = rays > 0.0 ? gathering.seconds() / rays : kSecondsPerRay / threadCount();
+    result.seconds.solve = traceSeconds + scale * gathering.seconds();
+    result.seconds.directLight = result.secondsPerRay * directRays(meshed, bake.directLight);
+    result.seconds.bake = kSecondsPerPatch * static_cast<double>(meshed.mesh.size());
+    result.peakMemory =
+        peakMemoryBytes() + static_cast<std::uint64_t>(kBytesPerPatch * static_cast<double>(meshed.mesh.size()) +
+                                                       kBytesPerReceiver * static_cast<double>(all.size()) +
+                                                       kBytesPerLight * more * static_cast<double>(some.lights.size()));
+}
+
 } // namespace
 
 BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progress& progress) {
@@ -96,33 +147,36 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     BakePrediction result;
     result.seconds.mesh = watch.lap();
     result.patches = meshed.mesh.size();
+    if (options.instantRadiosity) {
+        predictInstantRadiosity(meshed, options, result, progress);
+        return result;
+    }
     if (!options.formFactors.file.empty())
         throw UsageError("--dry-run: predicts nothing of a bake from a matrix file (--form-factors)");
     if (usesLines(options.solver.method))
         throw UsageError(fmt::format("--dry-run: predicts nothing of the solver {}", nameOf(options.solver.method)));
-    result.plan = planTransport(options.formFactors.transport, meshed.mesh, *meshed.rays, progress);
-    if (!hasRows(result.plan.options.method))
-        throw UsageError(fmt::format("--dry-run: predicts nothing of {}", nameOf(result.plan.options.method)));
+    const TransportPlan plan = planTransport(options.formFactors.transport, meshed.mesh, *meshed.rays, progress);
+    result.plan = plan;
+    if (!hasRows(plan.options.method))
+        throw UsageError(fmt::format("--dry-run: predicts nothing of {}", nameOf(plan.options.method)));
     if (!options.formFactors.transport.stored)
         throw UsageError(
             "--dry-run: predicts nothing of --storage none, whose rows are computed as the light needs them");
-    const auto method = makeMethod(result.plan, meshed.mesh, *meshed.rays);
+    const auto method = makeMethod(plan, meshed.mesh, *meshed.rays);
     const Pilot pilot = pilotRows(meshed, *method, progress);
 
     const auto patches = static_cast<double>(meshed.mesh.size());
     const double secondsPerRow = pilot.seconds / static_cast<double>(pilot.rows);
     const double entries = patches * pilot.entries;
-    result.rays = result.plan.rays;
+    result.rays = plan.rays;
     const auto raysPerRow = static_cast<double>(method->raysPerRow());
     result.secondsPerRay = raysPerRow > 0.0 ? secondsPerRow / raysPerRow : kSecondsPerRay / threadCount();
     result.seconds.formFactors = secondsPerRow * patches;
-    result.seconds.directLight = result.secondsPerRay * patches *
-                                 (static_cast<double>(meshed.scene->lights.size()) * options.directLight.points +
-                                  (meshed.scene->environment ? static_cast<double>(options.directLight.skyRays) : 0.0));
+    result.seconds.directLight = result.secondsPerRay * directRays(meshed, options.directLight);
     result.seconds.solve = predictPasses(pilot.reflected, options.solver) * entries * kSecondsPerEntry / threadCount();
     result.seconds.bake = kSecondsPerPatch * patches;
     result.matrixBytes =
-        static_cast<std::uint64_t>(entries * bytesPerFactor(*result.plan.options.storage) +
+        static_cast<std::uint64_t>(entries * bytesPerFactor(*plan.options.storage) +
                                    patches * (static_cast<double>(sizeof(FormFactorRow)) + kBytesPerRow));
     result.peakMemory = peakMemoryBytes() + result.matrixBytes + static_cast<std::uint64_t>(kBytesPerPatch * patches);
     return result;

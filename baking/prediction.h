@@ -4,22 +4,23 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace lambert {
 
 /// What a bake will take on this machine, as it is now loaded.
 struct BakePrediction {
     std::size_t patches = 0;
-    TransportPlan plan;            //!< as bakeScene makes it
-    std::uint64_t rays = 0;        //!< of all form factors
-    double secondsPerRay = 0.0;    //!< with all threads
-    BakeSeconds seconds;           //!< `mesh` is measured
-    std::uint64_t peakMemory = 0;  //!< bytes, of the whole process
-    std::uint64_t matrixBytes = 0; //!< the part of it for the form factors
+    std::optional<TransportPlan> plan; //!< of form factors, as bakeScene makes it
+    std::uint64_t rays = 0;            //!< of all form factors, or of instant radiosity
+    double secondsPerRay = 0.0;        //!< with all threads
+    BakeSeconds seconds;               //!< `mesh` is measured
+    std::uint64_t peakMemory = 0;      //!< bytes, of the whole process
+    std::uint64_t matrixBytes = 0;     //!< the part of it for the form factors
 };
 
-/// Predicts bakeScene: meshes the scene, computes some form-factor rows and extrapolates. Takes what meshing takes and a
-/// fraction of a second. Throws what bakeScene throws before it computes form factors.
+/// Predicts bakeScene: meshes the scene, computes some form-factor rows, or light from some virtual point lights to some
+/// points, and extrapolates. Takes what meshing takes and a fraction of a second. Throws what bakeScene throws before it computes form factors.
 BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progress& progress);
 
 } // namespace lambert

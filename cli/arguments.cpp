@@ -19,8 +19,9 @@ namespace lambert {
 
 namespace {
 
-constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3}, Quality{"normal", 1.0, 128, 1.3e9, 1e-4},
-                                Quality{"high", 4.0, 192, 1.2e10, 1e-5}};
+constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024},
+                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096},
+                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768}};
 
 } // namespace
 
@@ -52,7 +53,9 @@ void addMeshArguments(CLI::App& command, TransportArguments& a) {
 
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
     addMeshArguments(command, a);
-    addFormFactorArguments(command, a);
+    std::vector<std::string> methods = methodNames();
+    methods.emplace_back(kInstantRadiosity);
+    addFormFactorArguments(command, a, methods);
     command
         .add_option(
             "--form-factors", a.formFactors,
@@ -65,6 +68,7 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
         ->group("Solution");
     addLightArguments(command, a.light);
     addSolverArguments(command, a);
+    addInstantRadiosityArguments(command, a);
 }
 
 void addRunArguments(CLI::App& command, RunArguments& a) {
@@ -138,11 +142,16 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     options.mesh = meshOptions(a);
     checkLights(a.light);
     options.directLight = {.points = a.light.points, .skyRays = a.light.skyRays, .seed = run.seed};
-    options.solver = solverOptions(a);
-    if (usesLines(options.solver.method))
-        options.lineSolver = lineSolverOptions(a, run);
-    else
-        options.formFactors = matrixSource(a, run);
+    if (usesVirtualLights(a)) {
+        options.instantRadiosity = instantRadiosityOptions(a, run);
+    } else {
+        refuseInstantRadiosity(a);
+        options.solver = solverOptions(a);
+        if (usesLines(options.solver.method))
+            options.lineSolver = lineSolverOptions(a, run);
+        else
+            options.formFactors = matrixSource(a, run);
+    }
     options.warmStart = a.warmStart;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lambert {
@@ -48,7 +49,15 @@ struct TransportArguments {
     int bounces = 0;
     bool keepBounces = false;
     std::filesystem::path warmStart; //!< a solution file; empty: none
+    // Instant radiosity; see cli/vpl_arguments.cpp
+    std::optional<std::uint32_t> vpls;
+    std::optional<std::string> walk, clamp;
+    bool compensate = false;
 };
+
+/// The --method that needs no form factors and no solver.
+inline constexpr std::string_view kInstantRadiosity = "instant-radiosity";
+bool usesVirtualLights(const TransportArguments& arguments);
 
 struct RunArguments {
     std::uint64_t seed = 1;
@@ -72,12 +81,16 @@ struct Quality {
     int resolution;    //!< the largest, see TransportOptions
     double rays;       //!< the most
     double tolerance;
+    std::uint32_t particles; //!< of instant radiosity
 };
 const Quality& qualityOf(const std::string& name);
 
 void addMeshArguments(CLI::App& command, TransportArguments& arguments);
-void addFormFactorArguments(CLI::App& command, TransportArguments& arguments);
+/// `methods`: allowed with --method.
+void addFormFactorArguments(CLI::App& command, TransportArguments& arguments,
+                            const std::vector<std::string>& methods = methodNames());
 void addSolverArguments(CLI::App& command, TransportArguments& arguments);
+void addInstantRadiosityArguments(CLI::App& command, TransportArguments& arguments);
 void addTransportArguments(CLI::App& command, TransportArguments& arguments); ///< all of these, a matrix file, creases
 void addRunArguments(CLI::App& command, RunArguments& arguments);
 void addCameraArguments(CLI::App& command, PictureArguments& arguments);  ///< size and camera
@@ -89,6 +102,10 @@ MatrixSource matrixSource(const TransportArguments& arguments, const RunArgument
 SolverOptions solverOptions(const TransportArguments& arguments);
 /// For a solver that usesLines(): throws UsageError also for options of form factors.
 LineSolverOptions lineSolverOptions(const TransportArguments& arguments, const RunArguments& run);
+/// For --method instant-radiosity: throws UsageError also for options of form factors and solvers.
+InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& arguments, const RunArguments& run);
+/// For other methods: throws UsageError if an option of instant radiosity is given.
+void refuseInstantRadiosity(const TransportArguments& arguments);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
 
 /// Appends the files, other than the scene's, that are read.
@@ -98,6 +115,7 @@ void addTransportInputs(const TransportArguments& arguments, std::vector<std::fi
 nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::optional<TransportPlan>& plan);
 nlohmann::ordered_json solverOptionsJson(const SolverOptions& options);
 nlohmann::ordered_json lineSolverOptionsJson(const LineSolverOptions& options);
+nlohmann::ordered_json instantRadiosityOptionsJson(const InstantRadiosityOptions& options);
 std::string repairText(const RepairReport& repair); ///< one line
 nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair);
 

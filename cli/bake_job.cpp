@@ -55,6 +55,9 @@ Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Pictu
 }
 
 std::string solverText(const BakedScene& baked) {
+    if (baked.instantRadiosity)
+        return fmt::format("{} virtual point lights, {:.3g} rays", baked.instantRadiosity->lights,
+                           static_cast<double>(baked.rayCount));
     if (baked.stochastic)
         return fmt::format("{:.3g} rays in {} runs, standard error {:.2g} %",
                            static_cast<double>(baked.stochastic->rays), baked.stochastic->subRuns,
@@ -64,10 +67,12 @@ std::string solverText(const BakedScene& baked) {
 
 /// Which form factors, and how many rays they took.
 std::string transportText(const BakeArguments& a, const BakedScene& baked) {
-    if (baked.stochastic) return a.transport.method.value_or("local-lines");
-    return fmt::format("{}: {:.3g} rays",
+    if (baked.instantRadiosity) return std::string(kInstantRadiosity);
+    const std::string solver(nameOf(solverOptions(a.transport).method));
+    if (baked.stochastic) return a.transport.method.value_or("local-lines") + "; " + solver;
+    return fmt::format("{}: {:.3g} rays; {}",
                        baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
-                       static_cast<double>(baked.rayCount));
+                       static_cast<double>(baked.rayCount), solver);
 }
 
 /// Says what the solver did not reach, and returns whether it reached all.
@@ -80,6 +85,7 @@ bool checkTarget(const BakeOptions& options, const BakedScene& baked, SceneLog& 
                                 static_cast<double>(baked.stochastic->rays)));
         return false;
     }
+    if (baked.instantRadiosity) return true; // it has none
     double residual = baked.solution.residual;
     for (const BakedLight& light : baked.lights) residual = std::max(residual, light.residual);
     if (residual <= options.solver.tolerance || options.solver.bounces > 0) return true;
@@ -99,13 +105,12 @@ std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
 }
 
 SolutionRecord solutionOf(const BakeArguments& a, const BakeJob& job, const BakedScene& baked) {
-    return {
-        *baked.scene,
-        baked.mesh,
-        baked.solution,
-        baked.stochastic ? std::span<const Rgb>(baked.stochastic->standardError) : std::span<const Rgb>(),
-        {job.scene.string(), methodName(baked, a.transport), std::string(nameOf(solverOptions(a.transport).method))},
-        LAMBERT_VERSION};
+    return {*baked.scene,
+            baked.mesh,
+            baked.solution,
+            baked.stochastic ? std::span<const Rgb>(baked.stochastic->standardError) : std::span<const Rgb>(),
+            {job.scene.string(), methodName(baked, a.transport), solverName(baked, a.transport)},
+            LAMBERT_VERSION};
 }
 
 PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
@@ -172,6 +177,8 @@ void checkArguments(const BakeArguments& a) {
     checkPicture(a.picture);
     if (!a.solution.empty()) requireSolutionName(a.solution, "--solution");
     bakeOptions(a.transport, a.run);
+    if (a.perLight && usesVirtualLights(a.transport))
+        throw UsageError(fmt::format("--per-light: is not possible with --method {}", kInstantRadiosity));
     if (a.perLight && a.skipExisting)
         throw UsageError("--per-light: which files it writes is known only once a scene is read; not with "
                          "--skip-existing");
@@ -187,8 +194,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) log.warning(warning);
-    log.line(fmt::format("{} patches, {}; {}: {}", baked.mesh.size(), transportText(a, baked),
-                         nameOf(options.solver.method), solverText(baked)),
+    log.line(fmt::format("{} patches, {}: {}", baked.mesh.size(), transportText(a, baked), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));
 
@@ -240,7 +246,9 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
                       {"patches", predicted.patches},
                       {"rays", predicted.rays},
                       {"peak_memory_bytes", predicted.peakMemory},
-                      {"options", matrixOptionsJson(matrixSource(a.transport, a.run), predicted.plan)},
+                      {"options", usesVirtualLights(a.transport)
+                                      ? instantRadiosityOptionsJson(instantRadiosityOptions(a.transport, a.run))
+                                      : matrixOptionsJson(matrixSource(a.transport, a.run), predicted.plan)},
                       {"form_factors", {{"bytes", predicted.matrixBytes}}},
                       {"seconds",
                        {{"read", readSeconds},

@@ -33,13 +33,15 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    if (baked.stochastic)
+    if (baked.instantRadiosity)
+        options.update(instantRadiosityOptionsJson(instantRadiosityOptions(in.transport, in.run)));
+    else if (baked.stochastic)
         options.update(lineSolverOptionsJson(lineSolverOptions(in.transport, in.run)));
     else
         options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
     options.update(lightOptionsJson(in.transport.light));
     options["quality"] = in.transport.quality;
-    if (!baked.stochastic) options.update(solverOptionsJson(solverOptions(in.transport)));
+    if (!baked.stochastic && !baked.instantRadiosity) options.update(solverOptionsJson(solverOptions(in.transport)));
     options["warm_start"] = in.transport.warmStart.empty() ? Json(nullptr) : Json(in.transport.warmStart.string());
     options["threads"] = threadCount();
     return options;
@@ -82,6 +84,12 @@ Json stochasticJson(const StochasticSolution& solution) {
             {"imbalance_error", solution.imbalanceError}};
 }
 
+Json instantRadiosityJson(const InstantRadiosity& light) {
+    return {
+        {"vpls", light.lights},           {"particles", light.particles}, {"points_per_patch", light.points},
+        {"lost", jsonVector(light.lost)}, {"cut", jsonVector(light.cut)}, {"recovered", jsonVector(light.recovered)}};
+}
+
 Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
     Json bounces = Json::array();
     for (const std::vector<Rgb>& bounce : solution.bounces) {
@@ -122,8 +130,13 @@ Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overr
 Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 std::string methodName(const BakedScene& baked, const TransportArguments& transport) {
+    if (baked.instantRadiosity) return std::string(kInstantRadiosity);
     if (baked.stochastic) return transport.method.value_or("local-lines");
     return baked.plan ? std::string(nameOf(baked.plan->options.method)) : "file";
+}
+
+std::string solverName(const BakedScene& baked, const TransportArguments& transport) {
+    return baked.instantRadiosity ? "none" : std::string(nameOf(solverOptions(transport).method));
 }
 
 std::vector<MaterialLight> materialLight(const BakedScene& baked) {
@@ -161,11 +174,12 @@ Json bakeReport(const BakeReportInput& in) {
     report["patches"] = baked.mesh.size();
     report["vertices"] = baked.baked.positions.size();
     report["method"] = methodName(baked, in.transport);
-    report["solver"] = nameOf(solverOptions(in.transport).method);
-    report["iterations"] = baked.solution.iterations;
-    report["residual"] = baked.solution.residual;
+    report["solver"] = solverName(baked, in.transport);
+    report["iterations"] = baked.instantRadiosity ? Json(nullptr) : Json(baked.solution.iterations);
+    report["residual"] = baked.instantRadiosity ? Json(nullptr) : Json(baked.solution.residual);
     report["history"] = historyJson(baked.solution);
     if (baked.stochastic) report["stochastic"] = stochasticJson(*baked.stochastic);
+    if (baked.instantRadiosity) report["instant_radiosity"] = instantRadiosityJson(*baked.instantRadiosity);
     if (!baked.solution.bounces.empty()) report["bounces"] = bouncesJson(baked.mesh, baked.solution);
     report["rays"] = baked.rayCount;
     report["peak_memory_bytes"] = peakMemoryBytes();

@@ -20,6 +20,8 @@ struct MaterialLight {
 
 /// The name of the method that form factors came by; "file" if they were read.
 std::string methodName(const BakedScene& baked, const TransportArguments& transport);
+/// That of the solver; "none" for instant radiosity.
+std::string solverName(const BakedScene& baked, const TransportArguments& transport);
 
 /// One entry per material that is used, in the scene's order.
 std::vector<MaterialLight> materialLight(const BakedScene& baked);

@@ -43,7 +43,7 @@ void refuseBesideFile(const TransportArguments& a) {
 
 } // namespace
 
-void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
+void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std::vector<std::string>& methods) {
     const auto addChoice = [&](const char* name, auto& value, const std::string& text, const char* type,
                                const std::vector<std::string>& choices) {
         command.add_option(name, value, text)->check(CLI::IsMember(choices))->type_name(type)->group("Transport");
@@ -52,9 +52,10 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a) {
                                double high) {
         command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
     };
-    addChoice("--method", a.method,
-              fmt::format("How form factors are computed: {} [hemicube]", fmt::join(methodNames(), ", ")), "METHOD",
-              methodNames());
+    addChoice(
+        "--method", a.method,
+        fmt::format("How form factors are computed, or light without them: {} [hemicube]", fmt::join(methods, ", ")),
+        "METHOD", methods);
     addNumber(
         "--resolution", a.resolution,
         "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a multiple of 4 "

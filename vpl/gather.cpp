@@ -15,7 +15,14 @@ namespace {
 
 constexpr std::uint32_t kMostRecoveryRays = 65536;
 
-void check(const GatherOptions& options) {
+glm::dvec3 meanOf(const std::vector<glm::dvec3>& values) {
+    if (values.empty()) return glm::dvec3(0.0);
+    return std::accumulate(values.begin(), values.end(), glm::dvec3(0.0)) / static_cast<double>(values.size());
+}
+
+} // namespace
+
+void checkGather(const GatherOptions& options) {
     if (!(options.bound > 0.0))
         throw UsageError(
             fmt::format("bound of the geometric term: found {}, allowed is what is above 0", options.bound));
@@ -23,13 +30,6 @@ void check(const GatherOptions& options) {
         throw UsageError(fmt::format("rays that recover light: found {}, allowed are 0 to {}", options.recoveryRays,
                                      kMostRecoveryRays));
 }
-
-glm::dvec3 meanOf(const std::vector<glm::dvec3>& values) {
-    if (values.empty()) return glm::dvec3(0.0);
-    return std::accumulate(values.begin(), values.end(), glm::dvec3(0.0)) / static_cast<double>(values.size());
-}
-
-} // namespace
 
 double largestGeometricTerm(const Scene& scene, double bound) {
     if (!std::isfinite(bound)) return bound;
@@ -40,20 +40,24 @@ double largestGeometricTerm(const Scene& scene, double bound) {
 
 Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
                           std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress) {
-    check(options);
+    checkGather(options);
     const double largestTerm = largestGeometricTerm(rays.scene(), options.bound);
     Gathered result;
     progress.begin("gather light", receivers.size() * lights.size());
-    ShadowedSum sum = sumLights(rays, lights, receivers, largestTerm, progress);
+    const std::span<const PunctualLight> punctual(rays.scene().lights);
+    ShadowedSum sum =
+        sumLights(rays, {lights, options.direct ? punctual : punctual.first(0)}, receivers, largestTerm, progress);
     progress.end();
     result.irradiance = std::move(sum.irradiance);
     result.cut = meanOf(sum.cut);
+    result.cutAt = std::move(sum.cut);
     result.shadowRays = sum.rays;
     if (options.recoveryRays == 0 || !std::isfinite(largestTerm)) return result;
 
-    const Recovered recovered = recoverLight(rays, lights, receivers, largestTerm, options, progress);
+    Recovered recovered = recoverLight(rays, lights, receivers, largestTerm, options, progress);
     for (std::size_t i = 0; i < receivers.size(); ++i) result.irradiance[i] += recovered.irradiance[i];
     result.recovered = meanOf(recovered.irradiance);
+    result.recoveredAt = std::move(recovered.irradiance);
     result.shadowRays += recovered.shadowRays;
     result.recoveryRays = recovered.rays;
     return result;

@@ -22,12 +22,18 @@ struct GatherOptions {
     /// nothing without a bound.
     std::uint32_t recoveryRays = 0;
     std::uint64_t seed = 1; //!< of these rays
+    /// Whether receivers get what lights without area give them directly; no for who has found that in another way.
+    bool direct = true;
 };
 
+/// Throws UsageError for options out of range.
+void checkGather(const GatherOptions& options);
+
 struct Gathered {
-    std::vector<glm::dvec3> irradiance; //!< #receivers, E per m²
-    glm::dvec3 cut{0.0};                //!< mean over the receivers of what the bound took away; in part recovered
-    glm::dvec3 recovered{0.0};          //!< mean over the receivers of what recovery gave back
+    std::vector<glm::dvec3> irradiance;  //!< #receivers, E per m²
+    std::vector<glm::dvec3> cutAt;       //!< #receivers: what the bound took away from each; in part recovered
+    std::vector<glm::dvec3> recoveredAt; //!< #receivers: what recovery gave back to each; empty without it
+    glm::dvec3 cut{0.0}, recovered{0.0}; //!< their means over the receivers
     std::uint64_t shadowRays = 0;
     std::uint64_t recoveryRays = 0;
 };

@@ -138,7 +138,7 @@ Recovered recoverLight(const RayCaster& rays, std::span<const VirtualPointLight>
         std::vector<Receiver> points;
         for (const Branch& branch : branches) points.push_back(branch.point);
         progress.begin("gather light", points.size() * lights.size());
-        const ShadowedSum sum = sumLights(rays, lights, points, largestTerm, progress);
+        const ShadowedSum sum = sumLights(rays, {lights, rays.scene().lights}, points, largestTerm, progress);
         progress.end();
         result.shadowRays += sum.rays;
         for (std::size_t i = 0; i < branches.size(); ++i)

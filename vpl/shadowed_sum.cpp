@@ -236,8 +236,8 @@ std::size_t blockSize(std::size_t receivers) {
 
 } // namespace
 
-ShadowedSum sumLights(const RayCaster& rays, std::span<const VirtualPointLight> lights,
-                      std::span<const Receiver> receivers, double largestTerm, Progress& progress) {
+ShadowedSum sumLights(const RayCaster& rays, const ShadowedLights& lights, std::span<const Receiver> receivers,
+                      double largestTerm, Progress& progress) {
     ShadowedSum sum;
     sum.irradiance.resize(receivers.size());
     sum.cut.resize(receivers.size());
@@ -252,10 +252,11 @@ ShadowedSum sumLights(const RayCaster& rays, std::span<const VirtualPointLight> 
             const auto indices = std::span(order).subspan(first, std::min(perBlock, order.size() - first));
             block->load(receivers, indices);
             std::uint64_t count = 0;
-            for (const PunctualLight& light : rays.scene().lights)
+            for (const PunctualLight& light : lights.punctual)
                 count += static_cast<std::uint64_t>(addPunctualLight(rays, light, *block));
-            for (std::size_t from = 0; from < lights.size(); from += kLightsPerReport) {
-                const auto some = lights.subspan(from, std::min(kLightsPerReport, lights.size() - from));
+            const auto& points = lights.virtualLights;
+            for (std::size_t from = 0; from < points.size(); from += kLightsPerReport) {
+                const auto some = points.subspan(from, std::min(kLightsPerReport, points.size() - from));
                 for (const VirtualPointLight& light : some)
                     count += static_cast<std::uint64_t>(addVirtualLight(rays, light, largest, *block));
                 progress.advance(some.size() * indices.size());

@@ -18,8 +18,14 @@ struct ShadowedSum {
     std::uint64_t rays = 0;
 };
 
+/// What shines.
+struct ShadowedLights {
+    std::span<const VirtualPointLight> virtualLights;
+    std::span<const PunctualLight> punctual;
+};
+
 /// The sum of gatherIrradiance without recovery; `largestTerm` is G_max (1/m², may be infinite).
-ShadowedSum sumLights(const RayCaster& rays, std::span<const VirtualPointLight> lights,
-                      std::span<const Receiver> receivers, double largestTerm, Progress& progress);
+ShadowedSum sumLights(const RayCaster& rays, const ShadowedLights& lights, std::span<const Receiver> receivers,
+                      double largestTerm, Progress& progress);
 
 } // namespace lambert

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace lambert {
 
@@ -26,18 +27,6 @@ namespace {
 constexpr std::uint32_t kMostParticles = 1U << 24;
 constexpr std::uint32_t kMostBounces = kPrimes / 2 - 2; ///< every hit takes two primes
 constexpr std::uint32_t kTextureSamples = 16;           ///< per polygon, for its mean reflectance
-
-void check(const TraceOptions& options) {
-    if (options.particles < 1 || options.particles > kMostParticles)
-        throw UsageError(
-            fmt::format("virtual point lights: found {}, allowed are 1 to {}", options.particles, kMostParticles));
-    if (options.bounces > kMostBounces)
-        throw UsageError(
-            fmt::format("bounces of a fixed walk: found {}, allowed are 0 to {}", options.bounces, kMostBounces));
-    if (options.sampler != Sampler::Halton && options.sampler != Sampler::Random)
-        throw UsageError(fmt::format("sampler of virtual point lights: found {}, allowed are halton and random",
-                                     nameOf(options.sampler)));
-}
 
 /// The numbers that decide on particles.
 class Numbers {
@@ -68,11 +57,13 @@ struct Particle {
     glm::vec3 origin{0.0F}, direction{0.0F};
     Rgb weight{0.0F}; ///< flux, if N of them start
     bool alive = false;
+    bool direct = false; ///< comes straight from a light without area
 };
 
 /// What a particle's way to its next hit left behind.
 struct Arrival {
     enum class End : std::uint8_t { None, Escaped, BackFace, Surface } end = End::None;
+    bool direct = false; ///< as Particle's
     glm::dvec3 incoming{0.0};
     std::optional<VirtualPointLight> light;
 };
@@ -119,14 +110,15 @@ private:
             for (std::size_t i = begin; i < end; ++i) {
                 const auto j = static_cast<std::uint32_t>(i + 1);
                 const Emission emission = sources_.emit(numbers_.pair(j, 0), numbers_.pair(j, 1));
-                particles_[i] = {emission.origin, emission.direction, share * emission.flux,
-                                 emission.flux != Rgb(0.0F)};
+                particles_[i] = {emission.origin, emission.direction, share * emission.flux, emission.flux != Rgb(0.0F),
+                                 !emission.surface};
                 if (emission.surface && particles_[i].alive)
                     arrivals[i].light = VirtualPointLight{emission.surface->position, emission.surface->normal,
                                                           particles_[i].weight, 0, emission.surface->lift};
             }
         });
-        for (const Particle& particle : particles_) result_.flux.emitted += glm::dvec3(particle.weight);
+        for (const Particle& particle : particles_)
+            if (!particle.direct) result_.flux.emitted += glm::dvec3(particle.weight);
         collect(arrivals, count);
     }
 
@@ -148,6 +140,7 @@ private:
         particle.alive = false;
         Arrival arrival;
         arrival.incoming = scale * glm::dvec3(particle.weight);
+        arrival.direct = std::exchange(particle.direct, false);
         const auto hit = rays_.closest({particle.origin, particle.direction});
         if (!hit) {
             arrival.end = Arrival::End::Escaped;
@@ -195,13 +188,19 @@ private:
             if (arrival.light) result_.lights.push_back(*arrival.light);
             if (arrival.end == Arrival::End::None) continue;
             ++result_.rays;
-            if (arrival.end == Arrival::End::Escaped) result_.flux.escaped += arrival.incoming;
-            if (arrival.end == Arrival::End::BackFace) result_.flux.backFaces += arrival.incoming;
-            if (arrival.end == Arrival::End::Surface)
-                result_.flux.absorbed +=
-                    arrival.incoming - (arrival.light ? glm::dvec3(arrival.light->flux) : glm::dvec3(0.0));
+            account(arrival);
         }
         return alive;
+    }
+
+    void account(const Arrival& arrival) {
+        ParticleFlux& flux = result_.flux;
+        if (arrival.end == Arrival::End::Surface) {
+            if (arrival.direct) flux.received += arrival.incoming;
+            flux.absorbed += arrival.incoming - (arrival.light ? glm::dvec3(arrival.light->flux) : glm::dvec3(0.0));
+        } else if (!arrival.direct) {
+            (arrival.end == Arrival::End::Escaped ? flux.escaped : flux.backFaces) += arrival.incoming;
+        }
     }
 
     const RayCaster& rays_;
@@ -252,8 +251,20 @@ std::span<const VirtualPointLight> VirtualPointLights::ofBounces(std::uint32_t f
     return {begin, end};
 }
 
+void checkTrace(const TraceOptions& options) {
+    if (options.particles < 1 || options.particles > kMostParticles)
+        throw UsageError(
+            fmt::format("virtual point lights: found {}, allowed are 1 to {}", options.particles, kMostParticles));
+    if (options.bounces > kMostBounces)
+        throw UsageError(
+            fmt::format("bounces of a fixed walk: found {}, allowed are 0 to {}", options.bounces, kMostBounces));
+    if (options.sampler != Sampler::Halton && options.sampler != Sampler::Random)
+        throw UsageError(fmt::format("sampler of virtual point lights: found {}, allowed are halton and random",
+                                     nameOf(options.sampler)));
+}
+
 VirtualPointLights traceLights(const RayCaster& rays, const TraceOptions& options, Progress& progress) {
-    check(options);
+    checkTrace(options);
     return Tracer(rays, options).run(progress);
 }
 

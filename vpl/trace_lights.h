@@ -26,10 +26,15 @@ struct TraceOptions {
     std::uint64_t seed = 0;            //!< of the Halton sequence's scrambling, 0 for none; of the random numbers
 };
 
+/// Throws UsageError for options out of range.
+void checkTrace(const TraceOptions& options);
+
 /// Where the particles' flux went, per channel; sums over particles, so that they balance but for noise:
-/// emitted = absorbed + back faces + escaped + lost.
+/// emitted + received = absorbed + back faces + escaped + lost. Particles of lights without area that no surface receives
+/// are not counted.
 struct ParticleFlux {
-    glm::dvec3 emitted{0.0};
+    glm::dvec3 emitted{0.0};   //!< by surfaces
+    glm::dvec3 received{0.0};  //!< by surfaces, from lights without area
     glm::dvec3 absorbed{0.0};  //!< by the surfaces that reflected the rest
     glm::dvec3 backFaces{0.0}; //!< met a black back
     glm::dvec3 escaped{0.0};   //!< left the scene

@@ -26,11 +26,12 @@ def is_computing(pid):
 
 class Interrupt(ProgramTest):
     LONG = ("bake", DATA / "cornell_box.obj", "--patches", "20000", "--resolution", "512")
+    LONG_BY_LIGHTS = ("bake", DATA / "cornell_box.obj", "--patches", "20000", "--method", "instant-radiosity", "--vpls", "1000000")
 
-    def interrupt(self, number):
+    def interrupt(self, number, command=LONG):
         targets = [self.write(name, f"old {name}") for name in ("box.glb", "box.png", "box.json")]
         glb, png, json = targets
-        arguments = [PROGRAM, *map(str, (*self.LONG, "-o", glb, "--image", png, "--json", json))]
+        arguments = [PROGRAM, *map(str, (*command, "-o", glb, "--image", png, "--json", json))]
         with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
             try:
@@ -49,6 +50,9 @@ class Interrupt(ProgramTest):
 
     def test_ctrl_c_leaves_old_files_untouched(self):
         self.interrupt(signal.SIGINT)
+
+    def test_ctrl_c_leaves_old_files_untouched_while_virtual_lights_are_gathered(self):
+        self.interrupt(signal.SIGINT, self.LONG_BY_LIGHTS)
 
     def test_sigterm_leaves_old_files_untouched(self):
         self.interrupt(signal.SIGTERM)
