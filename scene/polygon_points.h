@@ -12,9 +12,11 @@ public:
     PolygonPoints(const Scene& scene, const Polygon& polygon);
 
     glm::vec2 chartAt(const glm::dvec2& u) const;
+    /// Of the area, in the triangle whose charts have u + v <= 1; all of a triangle's.
+    double firstShare() const { return share_; }
 
 private:
-    double share_; ///< of the area in the triangle whose charts end at u + v = 1
+    double share_; ///< firstShare()
 };
 
 } // namespace lambert

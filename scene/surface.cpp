@@ -64,6 +64,10 @@ glm::vec2 uvAt(const SurfaceCorners& surface, bool isQuad, float u, float v) {
     return atChart(surface.uv, isQuad, u, v);
 }
 
+glm::vec2 emissionUvAt(const SurfaceCorners& surface, bool isQuad, float u, float v) {
+    return atChart(surface.emissionUv, isQuad, u, v);
+}
+
 SurfaceSide sideOf(const Scene& scene, const Polygon& polygon, bool front) {
     if (isOccluder(scene, polygon)) return {};
     if (front) return {polygon.material, polygon.surface};
@@ -87,7 +91,7 @@ Rgb emittedRadianceAt(const Scene& scene, const Polygon& polygon, const SurfaceS
     const SurfaceCorners& corners = scene.surfaces[side.surface];
     if (material.hasHoles() && isHole(scene, material, uvAt(corners, polygon.isQuad(), u, v))) return Rgb(0.0F);
     if (!material.emissionTexture) return material.emittedRadiance;
-    const glm::vec2 uv = atChart(corners.emissionUv, polygon.isQuad(), u, v);
+    const glm::vec2 uv = emissionUvAt(corners, polygon.isQuad(), u, v);
     return material.emittedRadiance * glm::max(texelOf(scene, material.emissionTexture, uv), 0.0F);
 }
 

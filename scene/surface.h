@@ -17,6 +17,9 @@ int texelAt(float coordinate, int size, TextureWrap wrap);
 /// The texture coordinates of reflectance and opacity at a point of a polygon's chart, see polygonPoint.
 glm::vec2 uvAt(const SurfaceCorners& surface, bool isQuad, float u, float v);
 
+/// Those of emission.
+glm::vec2 emissionUvAt(const SurfaceCorners& surface, bool isQuad, float u, float v);
+
 /// One side of a polygon that is not black, as rays meet it.
 struct SurfaceSide {
     std::uint32_t material = kNone; //!< into Scene::materials

@@ -1,8 +1,10 @@
 #include "vpl/gather.h"
 
 #include "core/error.h"
+#include "solver/direct_light.h"
 #include "vpl/recovery.h"
 #include "vpl/shadowed_sum.h"
+#include "vpl/sky_light.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +31,7 @@ void checkGather(const GatherOptions& options) {
     if (options.recoveryRays > kMostRecoveryRays)
         throw UsageError(fmt::format("rays that recover light: found {}, allowed are 0 to {}", options.recoveryRays,
                                      kMostRecoveryRays));
+    checkDirectLight({.skyRays = options.skyRays});
 }
 
 double largestGeometricTerm(const Scene& scene, double bound) {
@@ -52,6 +55,11 @@ Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLig
     result.cut = meanOf(sum.cut);
     result.cutAt = std::move(sum.cut);
     result.shadowRays = sum.rays;
+    if (options.direct) {
+        const std::vector<glm::dvec3> sky = skyLight(rays, receivers, options.skyRays, options.seed, progress);
+        for (std::size_t i = 0; i < sky.size(); ++i) result.irradiance[i] += sky[i];
+        result.shadowRays += sky.size() * options.skyRays;
+    }
     if (options.recoveryRays == 0 || !std::isfinite(largestTerm)) return result;
 
     Recovered recovered = recoverLight(rays, lights, receivers, largestTerm, options, progress);

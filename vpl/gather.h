@@ -22,8 +22,10 @@ struct GatherOptions {
     /// nothing without a bound.
     std::uint32_t recoveryRays = 0;
     std::uint64_t seed = 1; //!< of these rays
-    /// Whether receivers get what lights without area give them directly; no for who has found that in another way.
+    /// Whether receivers get what lights without area and the environment give them directly; no for who has found that in
+    /// another way.
     bool direct = true;
+    std::uint32_t skyRays = 1024; //!< from each receiver to the environment; 2 to 2^24
 };
 
 /// Throws UsageError for options out of range.
@@ -45,8 +47,8 @@ double largestGeometricTerm(const Scene& scene, double bound);
 ///
 ///     E(x) = Σ Φ/π min(cosθ_x cosθ_v / d², G_max) V(x, v)  +  point, spot: I cosθ_x / d²  +  directional: E_⊥ cosθ_x
 ///
-/// one shadow ray each (the environment's light is left out), in packets from a light to neighbouring receivers. The same whatever the number of threads. Throws
-/// UsageError for options out of range, Cancelled.
+/// one shadow ray each, in packets from a light to neighbouring receivers; and what the environment gives directly, by rays. The
+/// same whatever the number of threads. Throws UsageError for options out of range, Cancelled.
 Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
                           std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress);
 

@@ -43,7 +43,7 @@ std::vector<Receiver> patchReceivers(const PatchMesh& mesh, const RayCaster& ray
                                      std::uint64_t seed);
 
 /// The light on patches by virtual point lights: E is E_0 of the problem plus the mean of what is gathered at points of the
-/// patch, B = B_e + ρ E. Walks see the textures of `rays`' scene, whose mesh the problem's is; the environment sends no particles.
+/// patch, B = B_e + ρ E. Walks see the textures of `rays`' scene, whose mesh the problem's is.
 /// The same whatever the number of threads. Throws UsageError as above, Cancelled.
 InstantRadiosity solveInstantRadiosity(const SolverProblem& problem, const RayCaster& rays,
                                        const InstantRadiosityOptions& options, Progress& progress);

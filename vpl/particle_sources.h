@@ -3,10 +3,12 @@
 #include "scene/polygon_points.h"
 #include "scene/ray_caster.h"
 #include "scene/surface.h"
+#include "vpl/textured_emitter.h"
 
 #include <glm/vec2.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,8 +32,7 @@ struct Emission {
     glm::vec3 direction{0.0F};           //!< unit length
 };
 
-/// All that emits light in a prepared scene: polygons, two-sided ones on both sides, and lights without area. The environment
-/// is not among them.
+/// All that emits light in a prepared scene: polygons, two-sided ones on both sides, lights without area, and the environment.
 class ParticleSources {
 public:
     /// `rays` must outlive it.
@@ -39,23 +40,26 @@ public:
 
     bool empty() const { return sources_.empty(); }
 
-    /// Chooses a light with a probability proportional to its flux (sum of the channels; an emission texture is taken for
-    /// white here and counts in the particle's flux), a point on it, and a direction: cosine-distributed on polygons,
-    /// proportional to the intensity of point lights and spots. A directional light sends its particles from a disk across
-    /// the scene's bounding sphere. `place` chooses the light (first coordinate, then rescaled) and the point, `direction`
-    /// the direction; both in [0, 1)².
+    /// Chooses a light with a probability proportional to its flux (sum of the channels), a point on it, where an emission
+    /// texture is bright, and a direction: cosine-distributed on polygons, proportional to the intensity of point lights and
+    /// spots, to the brightness of the environment. Directional lights and the environment send their particles from a disk
+    /// across the scene's bounding sphere. `place` chooses the light (first coordinate, then rescaled) and the point,
+    /// `direction` the direction; both in [0, 1)².
     Emission emit(const glm::dvec2& place, const glm::dvec2& direction) const;
 
 private:
     struct Source {
         std::uint32_t polygon = kNone; ///< or none:
-        std::uint32_t light = kNone;   ///< into Scene::lights
+        std::uint32_t light = kNone;   ///< into Scene::lights; neither: the environment
         bool front = true;
         glm::dvec3 flux{0.0};
+        std::shared_ptr<const TexturedEmitter> texture{}; ///< of a polygon that has one
     };
+    void addPolygons();
     void add(const Source& source);
     Emission fromPolygon(const Source& source, const glm::dvec2& place, const glm::dvec2& direction) const;
     Emission fromLight(const PunctualLight& light, const glm::dvec2& place, const glm::dvec2& direction) const;
+    Emission fromEnvironment(const glm::dvec2& place, const glm::dvec2& direction) const;
 
     const RayCaster& rays_;
     std::vector<Source> sources_;

@@ -11,6 +11,7 @@
 #include "scene/surface.h"
 #include "vpl/particle_sources.h"
 #include "vpl/shadowed_sum.h"
+#include "vpl/sky_light.h"
 
 #include <glm/geometric.hpp>
 
@@ -22,6 +23,8 @@
 namespace lambert {
 
 namespace {
+
+constexpr std::uint32_t kSkyRays = 16; ///< from one of many points that stand for a receiver's surroundings
 
 /// A point whose light counts for a receiver.
 struct Branch {
@@ -140,9 +143,11 @@ Recovered recoverLight(const RayCaster& rays, std::span<const VirtualPointLight>
         progress.begin("gather light", points.size() * lights.size());
         const ShadowedSum sum = sumLights(rays, {lights, rays.scene().lights}, points, largestTerm, progress);
         progress.end();
-        result.shadowRays += sum.rays;
+        const std::vector<glm::dvec3> sky = skyLight(rays, points, kSkyRays, options.seed + generation + 1, progress);
+        result.shadowRays += sum.rays + sky.size() * kSkyRays;
         for (std::size_t i = 0; i < branches.size(); ++i)
-            result.irradiance[branches[i].receiver] += branches[i].weight * sum.irradiance[i];
+            result.irradiance[branches[i].receiver] +=
+                branches[i].weight * (sum.irradiance[i] + (sky.empty() ? glm::dvec3(0.0) : sky[i]));
     }
     return result;
 }
