@@ -112,8 +112,6 @@ InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& a, con
     if (a.sampler && *a.sampler != "halton" && *a.sampler != "random")
         throw UsageError(fmt::format("--sampler: found {}, allowed with --method {} are halton and random", *a.sampler,
                                      kInstantRadiosity));
-    if (!a.light.sky.empty())
-        throw UsageError(fmt::format("--sky: is not possible with --method {}", kInstantRadiosity));
     options.trace.sampler = samplerByName(a.sampler.value_or("halton")).value();
     options.trace.seed = options.gather.seed = run.seed;
     if (a.clamp) options.gather.bound = boundOf(*a.clamp);

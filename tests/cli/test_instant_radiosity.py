@@ -9,37 +9,51 @@ METHOD = ("--method", "instant-radiosity")
 
 
 class Light(ProgramTest):
-    def assert_agreement(self, scene, tolerance, *options, small=()):
-        """Of the mean irradiance of every material, within this part of it; of those in `small` within another."""
-        expected = materials(self.bake(scene, *options))
-        found = materials(self.bake(scene, *options, *METHOD, "--vpls", "16384", "--compensate"))
+    def assert_agreement(self, scene, *options, vpls=2048):
+        """Of all light, and of the mean irradiance of materials with 3 % of the area and more.
+
+        2048 particles: over seeds the light of all surfaces scatters by 1.3 %, that of single large materials by up to 2.5 %;
+        three standard deviations. (Of small materials near a lamp it scatters by 10 %.) Local lines are good for 0.3 %."""
+        expected = materials(self.bake(scene, *options, "--method", "local-lines", "--lines", "4096"))
+        found = materials(self.bake(scene, *options, *METHOD, "--vpls", vpls, "--compensate"))
         self.assertEqual(list(found), list(expected))
-        for name, material in found.items():
-            for value, exact in zip(material["mean_irradiance"], expected[name]["mean_irradiance"]):
-                self.assert_close(value, exact, dict(small).get(name, tolerance), (scene.name, name))
+        area = sum(material["area"] for material in found.values())
+        for channel in range(3):
+            light, exact = (sum(m["area"] * m["mean_irradiance"][channel] for m in table.values())
+                            for table in (found, expected))
+            self.assert_close(light, exact, 0.04, (scene.name, channel))
+            for name, material in found.items():
+                if material["area"] > 0.03 * area:
+                    self.assert_close(material["mean_irradiance"][channel], expected[name]["mean_irradiance"][channel], 0.08,
+                                      (scene.name, name))
 
     def test_of_the_cornell_box_is_that_of_form_factors(self):
-        self.assert_agreement(BOX, 0.01, "--patches", "1500")
+        self.assert_agreement(BOX, "--patches", "1000")
 
     def test_of_a_room_with_four_lamps_is_that_of_form_factors(self):
-        self.assert_agreement(DATA / "table_room.obj", 0.02, "--patches", "3000")
+        self.assert_agreement(DATA / "table_room.obj", "--patches", "2000")
 
     def test_of_two_sided_surfaces_is_that_of_form_factors(self):
-        self.assert_agreement(DATA / "table_room.obj", 0.02, "--patches", "3000", "--two-sided")
+        self.assert_agreement(BOX, "--patches", "2000", "--two-sided")
 
     def test_of_textures_and_holes_is_that_of_form_factors(self):
-        self.assert_agreement(DATA / "textured_room.gltf", 0.02, "--patches", "3000")
+        self.assert_agreement(DATA / "textured_room.gltf", "--patches", "2000")
 
     def test_of_lights_without_area_is_that_of_form_factors(self):
-        self.assert_agreement(DATA / "window_room.gltf", 0.02, "--patches", "3000", "--sun", "135,35")
+        self.assert_agreement(DATA / "window_room.gltf", "--patches", "2000")
+
+    def test_of_the_sky_is_that_of_form_factors(self):
+        # One in twenty of the sky's particles comes through the window.
+        self.assert_agreement(DATA / "window_room.gltf", "--patches", "1000", "--sky", "20,30,40", "--emit", "panel=0,0,0",
+                              vpls=32768)
 
     def test_does_not_depend_on_the_walk(self):
-        walks = [materials(self.bake(BOX, "--patches", "500", *METHOD, "--vpls", "16384", *options))
-                 for options in ((), ("--walk", "roulette"), ("--walk", "fixed", "--bounces", "16"))]
+        walks = [materials(self.bake(BOX, "--patches", "500", *METHOD, *options))
+                 for options in ((), ("--walk", "roulette"), ("--walk", "fixed", "--bounces", "12"))]
         for walk in walks[1:]:
             for name, material in walk.items():
                 for value, other in zip(material["mean_irradiance"], walks[0][name]["mean_irradiance"]):
-                    self.assert_close(value, other, 0.02, name)
+                    self.assert_close(value, other, 0.06, name)  # 4096 particles
 
     def test_is_the_same_on_any_number_of_threads(self):
         def bake(threads):
@@ -125,12 +139,12 @@ class Files(ProgramTest):
     def test_of_a_probe(self):
         points = self.write("points.csv", "0.278,0,0.28,0,1,0\n0.278,0.3,0.1,0,1,0\n")
         table = {}
-        for options in ((), (*METHOD, "--vpls", "16384")):
+        for options in ((), (*METHOD, "--compensate")):
             done = self.run_well("probe", BOX, points, "--patches", "1500", *options)
             table[options] = [[float(v) for v in line.split(",")] for line in done.stdout.splitlines() if line[0] != "#"]
         for found, expected in zip(*table.values()):
             for k in (6, 7, 8):
-                self.assert_close(found[k], expected[k], 0.1, found)
+                self.assert_close(found[k], expected[k], 0.05, found)  # of 4096 particles, as above
 
 
 class DryRun(ProgramTest):
