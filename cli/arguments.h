@@ -104,6 +104,8 @@ SolverOptions solverOptions(const TransportArguments& arguments);
 LineSolverOptions lineSolverOptions(const TransportArguments& arguments, const RunArguments& run);
 /// For --method instant-radiosity: throws UsageError also for options of form factors and solvers.
 InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& arguments, const RunArguments& run);
+/// The bound that --clamp gives, kUnbounded for none. Throws UsageError.
+double geometricBound(const std::string& text);
 /// For other methods: throws UsageError if an option of instant radiosity is given.
 void refuseInstantRadiosity(const TransportArguments& arguments);
 BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);

@@ -51,18 +51,11 @@ struct CompareVplArguments {
 
 using Method = std::shared_ptr<const VplMethod>;
 
-double bound(const std::string& text) {
-    if (text == "none") return kUnbounded;
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value)) return value;
-    throw UsageError(fmt::format("--clamp: found \"{}\", allowed are numbers above 0 and none", text));
-}
-
 Method instantRadiosity(const CompareVplArguments& a) {
     InstantRadiosityChoice choice;
-    choice.walk = a.walk == "quasi" ? Walk::Quasi : a.walk == "roulette" ? Walk::Roulette : Walk::Fixed;
+    choice.walk = walkByName(a.walk).value();
     choice.bounces = a.bounces;
-    choice.bound = bound(a.clamp);
+    choice.bound = geometricBound(a.clamp);
     choice.indirectShadows = a.visibility == "exact";
     choice.compensate = a.compensate;
     return std::make_shared<InstantRadiosityMethod>(choice);

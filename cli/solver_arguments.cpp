@@ -20,7 +20,9 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
         ->type_name("T")
         ->check(between(0.0, 1.0))
         ->group("Solution");
-    command.add_option("--bounces", a.bounces, "Jacobi: at most so many bounces; 0: no limit [0]")
+    command
+        .add_option("--bounces", a.bounces,
+                    "Jacobi: at most so many bounces; 0: no limit [0]; --walk fixed: so many [4]")
         ->type_name("K")
         ->check(between(0, 1e6))
         ->group("Solution");

@@ -70,8 +70,10 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         "Local lines per patch, 1 to 16777216 [32768], or global lines in all, up to 4294967295 [an eighth of the "
         "hemicubes' rays]; less if time or memory ask for it",
         "N", 1.0, 4294967295.0);
-    addChoice("--sampler", a.sampler, "Of lines: random, stratified, halton or sobol [sobol]", "SAMPLER",
-              {"random", "stratified", "halton", "sobol"});
+    addChoice(
+        "--sampler", a.sampler,
+        "Of lines: random, stratified, halton or sobol [sobol]; of virtual point lights: halton or random [halton]",
+        "SAMPLER", {"random", "stratified", "halton", "sobol"});
     addChoice("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]", "SET",
               {"chords", "bundles"});
     addNumber("--form-factor-error", a.formFactorError,

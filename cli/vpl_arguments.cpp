@@ -5,34 +5,16 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace lambert {
 
 namespace {
 
-constexpr std::array kWalks{std::pair{"quasi", Walk::Quasi}, std::pair{"roulette", Walk::Roulette},
-                            std::pair{"fixed", Walk::Fixed}};
 constexpr int kMostBounces = 126;           ///< see TraceOptions
 constexpr std::uint32_t kRecoveryRays = 16; ///< from each of a patch's points
-
-std::string_view nameOf(Walk walk) {
-    for (const auto& [name, value] : kWalks)
-        if (value == walk) return name;
-    return ""; // not reached
-}
-
-double boundOf(const std::string& text) {
-    if (text == "none") return kUnbounded;
-    double bound = 0.0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, bound);
-    if (error != std::errc() || at != end || !(bound > 0.0 && bound <= 1e12))
-        throw UsageError(fmt::format("--clamp: found \"{}\", allowed are numbers above 0 up to 1e12, or none", text));
-    return bound;
-}
 
 void refuseOthers(const TransportArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -86,6 +68,16 @@ void addInstantRadiosityArguments(CLI::App& command, TransportArguments& a) {
     command.add_flag("--compensate", a.compensate, "Recovers by rays what the bound takes away")->group(kGroup);
 }
 
+double geometricBound(const std::string& text) {
+    if (text == "none") return kUnbounded;
+    double bound = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, bound);
+    if (error != std::errc() || at != end || !(bound > 0.0) || !std::isfinite(bound))
+        throw UsageError(fmt::format("--clamp: found \"{}\", allowed are numbers above 0 and none", text));
+    return bound;
+}
+
 bool usesVirtualLights(const TransportArguments& a) { return a.method == kInstantRadiosity; }
 
 void refuseInstantRadiosity(const TransportArguments& a) {
@@ -99,8 +91,7 @@ InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& a, con
     refuseOthers(a);
     InstantRadiosityOptions options;
     options.trace.particles = a.vpls.value_or(qualityOf(a.quality).particles);
-    for (const auto& [name, walk] : kWalks)
-        if (a.walk == name) options.trace.walk = walk;
+    if (a.walk) options.trace.walk = walkByName(*a.walk).value();
     if (a.bounces > 0) {
         if (options.trace.walk != Walk::Fixed)
             throw UsageError("--bounces: is for --walk fixed; other walks end by themselves");
@@ -114,7 +105,7 @@ InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& a, con
                                      kInstantRadiosity));
     options.trace.sampler = samplerByName(a.sampler.value_or("halton")).value();
     options.trace.seed = options.gather.seed = run.seed;
-    if (a.clamp) options.gather.bound = boundOf(*a.clamp);
+    if (a.clamp) options.gather.bound = geometricBound(*a.clamp);
     if (a.compensate && options.gather.bound == kUnbounded)
         throw UsageError("--compensate: there is nothing to recover with --clamp none");
     options.gather.recoveryRays = a.compensate ? kRecoveryRays : 0;
@@ -130,7 +121,7 @@ nlohmann::ordered_json instantRadiosityOptionsJson(const InstantRadiosityOptions
     json["bounces"] = options.trace.walk == Walk::Fixed ? Json(options.trace.bounces) : Json(nullptr);
     json["clamp"] = options.gather.bound == kUnbounded ? Json("none") : Json(options.gather.bound);
     json["compensate"] = options.gather.recoveryRays > 0;
-    json["sampler"] = lambert::nameOf(options.trace.sampler);
+    json["sampler"] = nameOf(options.trace.sampler);
     return json;
 }
 

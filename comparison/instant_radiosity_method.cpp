@@ -41,8 +41,6 @@ std::vector<VirtualPointLight> withoutIndirectShadows(std::vector<VirtualPointLi
     return lights;
 }
 
-const char* nameOf(Walk walk) { return walk == Walk::Quasi ? "quasi" : walk == Walk::Roulette ? "roulette" : "fixed"; }
-
 } // namespace
 
 InstantRadiosityMethod::InstantRadiosityMethod(const InstantRadiosityChoice& choice) : choice_(choice) {
@@ -54,7 +52,7 @@ InstantRadiosityMethod::InstantRadiosityMethod(const InstantRadiosityChoice& cho
 bool InstantRadiosityMethod::clamps() const { return std::isfinite(choice_.bound); }
 
 std::vector<std::pair<std::string, std::string>> InstantRadiosityMethod::options() const {
-    std::string walk = nameOf(choice_.walk);
+    std::string walk(nameOf(choice_.walk));
     if (choice_.walk == Walk::Fixed) walk += fmt::format(", {} bounces", choice_.bounces);
     std::string bound = clamps() ? fmt::format("{:g}/ℓ²", choice_.bound) : "none";
     if (clamps() && choice_.compensate) bound += fmt::format(", compensated by {} rays", choice_.recoveryRays);

@@ -14,10 +14,10 @@
 namespace lambert {
 
 struct InstantRadiosityOptions {
-    TraceOptions trace;
-    GatherOptions gather; //!< but for `direct`: E_0 is the problem's
+    TraceOptions trace{};
+    GatherOptions gather{}; //!< but for `direct`: E_0 is the problem's
     /// Points of a patch at which light is gathered, 1 to 4096; none: 4, and up to 256 where that is no more than 16384 in all.
-    std::optional<std::uint32_t> points;
+    std::optional<std::uint32_t> points{};
 };
 
 /// Throws UsageError for options out of range.

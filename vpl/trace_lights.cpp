@@ -16,6 +16,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -24,6 +25,9 @@ namespace lambert {
 
 namespace {
 
+constexpr std::array kWalks{std::pair<std::string_view, Walk>{"quasi", Walk::Quasi},
+                            std::pair<std::string_view, Walk>{"roulette", Walk::Roulette},
+                            std::pair<std::string_view, Walk>{"fixed", Walk::Fixed}};
 constexpr std::uint32_t kMostParticles = 1U << 24;
 constexpr std::uint32_t kMostBounces = kPrimes / 2 - 2; ///< every hit takes two primes
 constexpr std::uint32_t kTextureSamples = 16;           ///< per polygon, for its mean reflectance
@@ -249,6 +253,18 @@ std::span<const VirtualPointLight> VirtualPointLights::ofBounces(std::uint32_t f
     const auto end = std::upper_bound(begin, lights.end(), last,
                                       [](std::uint32_t b, const VirtualPointLight& light) { return b < light.bounce; });
     return {begin, end};
+}
+
+std::optional<Walk> walkByName(std::string_view name) {
+    for (const auto& [walkName, walk] : kWalks)
+        if (walkName == name) return walk;
+    return std::nullopt;
+}
+
+std::string_view nameOf(Walk walk) {
+    for (const auto& [name, value] : kWalks)
+        if (value == walk) return name;
+    return ""; // not reached
 }
 
 void checkTrace(const TraceOptions& options) {

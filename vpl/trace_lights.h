@@ -6,7 +6,9 @@
 #include "vpl/virtual_point_light.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace lambert {
@@ -17,6 +19,10 @@ enum class Walk {
     Roulette, ///< with the probability that the surface absorbs them; no bias
     Fixed     ///< after a number of bounces; what comes after is lost
 };
+
+/// quasi, roulette or fixed; nothing for any other name.
+std::optional<Walk> walkByName(std::string_view name);
+std::string_view nameOf(Walk walk);
 
 struct TraceOptions {
     std::uint32_t particles = 1000; //!< N, from the lights; 1 to 2^24

@@ -20,7 +20,7 @@ TEST(Prediction, PatchesResolutionAndRaysAreThoseOfTheBake) {
     const BakePrediction predicted = predictBake(scene, smallOptions(), progress);
     const BakedScene baked = bakeScene(scene, smallOptions(), progress);
     EXPECT_EQ(predicted.patches, baked.mesh.size());
-    EXPECT_EQ(predicted.plan.options.resolution, baked.plan->options.resolution);
+    EXPECT_EQ(predicted.plan->options.resolution, baked.plan->options.resolution);
     EXPECT_EQ(predicted.rays, baked.rayCount);
 }
 

@@ -52,11 +52,6 @@ struct Seen {
     std::vector<double> points, solid;
 };
 
-glm::vec2 emissionUvAt(SurfaceCorners corners, bool isQuad, float u, float v) {
-    corners.uv = corners.emissionUv;
-    return uvAt(corners, isQuad, u, v);
-}
-
 glm::dvec4 lookup(const Scene& scene, const TextureUse& use, const glm::vec2& uv) {
     const Texture& texture = *scene.textures[use.texture];
     return glm::dvec4(
