@@ -88,10 +88,24 @@ void bakeLights(const BakeOptions& options, const LightSolver& solver, BakedScen
         result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction}, progress);
 }
 
-CheckpointOptions solverCheckpoint(const BakeOptions& options) {
+CheckpointOptions solverCheckpoint(const BakeOptions& options, std::size_t solve) {
     CheckpointOptions result = options.formFactors.checkpoint;
-    result.path = solverCheckpointPath(result);
+    result.path = solverCheckpointPath(result, solve);
     return result;
+}
+
+/// Throws for files of solves from `first` on that cannot be used, before hours of work.
+void checkCheckpoints(const BakeOptions& options, std::size_t first, std::size_t solves) {
+    if (options.formFactors.checkpoint.path.empty()) return;
+    for (std::size_t k = first; k < solves; ++k) SolverCheckpoint::check(solverCheckpoint(options, k));
+}
+
+/// The checkpoint of the next solve; null if there are to be none.
+SolverCheckpoint* nextCheckpoint(const BakeOptions& options, std::string identity, BakedScene& result) {
+    const CheckpointOptions checkpoint = solverCheckpoint(options, result.checkpoints.size());
+    if (checkpoint.path.empty()) return nullptr;
+    result.checkpoints.push_back(std::make_unique<SolverCheckpoint>(checkpoint, std::move(identity)));
+    return result.checkpoints.back().get();
 }
 
 /// What is solved, and from where.
@@ -103,23 +117,34 @@ struct Task {
 /// The whole and, if wanted, each group of lights. `formFactors` names what the rows depend on, in one line.
 void solveFor(const BakeOptions& options, const Task& task, FormFactorRows& rows, const std::string& formFactors,
               BakedScene& result, Progress& progress) {
-    SolverContext context{task.start};
-    if (const CheckpointOptions checkpoint = solverCheckpoint(options); !checkpoint.path.empty())
-        result.checkpoint = std::make_unique<SolverCheckpoint>(
-            checkpoint, fmt::format("{}; {}", formFactors, solverIdentity(task.problem, options.solver, context)));
-    context.checkpoint = result.checkpoint.get();
-    result.solution = solve(task.problem, rows, options.solver, progress, context);
+    const auto run = [&](const Task& t, const SolverOptions& solver) {
+        SolverContext context{t.start};
+        context.checkpoint = nextCheckpoint(
+            options, fmt::format("{}; {}", formFactors, solverIdentity(t.problem, solver, context)), result);
+        return solve(t.problem, rows, solver, progress, context);
+    };
+    result.solution = run(task, options.solver);
     SolverOptions solver = options.solver;
     solver.keepBounces = false;
     bakeLights(
-        options, [&](const SolverProblem& light) { return solve(light, rows, solver, progress); }, result, progress);
+        options,
+        [&](const SolverProblem& light) {
+            return run({light, {}}, solver);
+        },
+        result, progress);
 }
 
 /// Without form factors.
 void solveWithLines(const BakeOptions& options, const Task& task, BakedScene& result, Progress& progress) {
     Stopwatch watch;
+    const bool kept = !options.formFactors.checkpoint.path.empty();
+    const std::string identity = fmt::format("lambert {}, scene {:016x}", options.formFactors.version,
+                                             kept ? sceneChecksum(result.mesh, *result.scene) : 0);
     const auto run = [&](const SolverProblem& light) {
-        StochasticSolution solution = solveByLines(light, *result.rays, options.lineSolver, progress);
+        SolverContext context;
+        context.checkpoint = nextCheckpoint(
+            options, fmt::format("{}; {}", identity, lineSolverIdentity(light, options.lineSolver)), result);
+        StochasticSolution solution = solveByLines(light, *result.rays, options.lineSolver, progress, context);
         result.rayCount += solution.rays;
         return solution;
     };
@@ -202,21 +227,22 @@ void collectWarnings(BakedScene& result) {
 
 } // namespace
 
-std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows) {
+std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows, std::size_t solve) {
     std::filesystem::path path = rows.path;
-    return path.empty() ? path : path += ".solver";
+    if (path.empty()) return path;
+    return path += solve == 0 ? std::string(".solver") : fmt::format(".solver.{}", solve);
 }
 
 void removeCheckpoints(const BakedScene& baked) {
     if (baked.journal) baked.journal->remove();
-    if (baked.checkpoint) baked.checkpoint->remove();
+    for (const auto& checkpoint : baked.checkpoints) checkpoint->remove();
 }
 
 BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& progress) {
     Stopwatch watch;
-    if (const CheckpointOptions checkpoint = solverCheckpoint(options); !checkpoint.path.empty())
-        SolverCheckpoint::check(checkpoint);
+    checkCheckpoints(options, 0, 1);
     BakedScene result{meshLitScene(scene, options.mesh, progress)};
+    if (options.perLight) checkCheckpoints(options, 1, 1 + lightGroups(*result.scene, result.mesh).size());
     result.seconds.mesh = watch.lap();
 
     const SolverProblem problem(

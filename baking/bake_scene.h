@@ -19,7 +19,7 @@ namespace lambert {
 /// Everything between a scene and the light at its vertices.
 struct BakeOptions {
     MeshOptions mesh;
-    MatrixSource formFactors;
+    MatrixSource formFactors; //!< its checkpoint is also that of the solvers
     DirectLightOptions directLight;
     SolverOptions solver;
     LineSolverOptions lineSolver; //!< where solver.method usesLines(): instead of form factors
@@ -56,7 +56,7 @@ struct BakedScene : MeshedScene {
     std::optional<TransportPlan> plan{};            //!< of the form factors; none: read from a file, or not used
     std::optional<RepairReport> repair{};           //!< of the form factors; none: not repaired
     std::unique_ptr<MatrixJournal> journal{};       //!< see SceneMatrix
-    std::unique_ptr<SolverCheckpoint> checkpoint{}; //!< to be removed once the result is on the disk
+    std::vector<std::unique_ptr<SolverCheckpoint>> checkpoints{}; //!< to be removed once the result is on the disk
     std::uint64_t rayCount = 0;                     //!< of the form factors, or of what found the light without them
     RowQuality rows{};
     std::size_t separatedFaces = 0;
@@ -64,8 +64,9 @@ struct BakedScene : MeshedScene {
     std::vector<std::string> warnings{}; //!< one line each
 };
 
-/// The file of the solver's state beside the one of finished rows; empty if that is.
-std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows);
+/// The file of a solver's state beside the one of finished rows; empty if that is. `solve` 0 is that of the whole scene, those
+/// from 1 on are of its groups of lights.
+std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows, std::size_t solve = 0);
 
 /// meshLitScene, then the light of lights without area, form factors (without a matrix: while the solver works), solution, and
 /// reconstruction at the vertices. Throws InputError if the scene has no light, Cancelled, what the readers and writers of

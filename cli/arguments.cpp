@@ -147,10 +147,13 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     } else {
         refuseInstantRadiosity(a);
         options.solver = solverOptions(a);
-        if (usesLines(options.solver.method))
+        if (usesLines(options.solver.method)) {
             options.lineSolver = lineSolverOptions(a, run);
-        else
+            options.formFactors.checkpoint = {a.checkpoint, a.resume, a.checkpointInterval};
+            options.formFactors.version = LAMBERT_VERSION;
+        } else {
             options.formFactors = matrixSource(a, run);
+        }
     }
     options.warmStart = a.warmStart;
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);

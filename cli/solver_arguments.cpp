@@ -74,7 +74,6 @@ void refuseFormFactors(const TransportArguments& a, SolverMethod method) {
     refuse(a.storage != "auto", "--storage");
     refuse(a.repair, "--repair");
     refuse(!a.formFactors.empty(), "--form-factors");
-    refuse(!a.checkpoint.empty(), "--checkpoint");
     refuse(a.tolerance.has_value(), "--tolerance");
     refuse(!a.warmStart.empty(), "--warm-start");
 }

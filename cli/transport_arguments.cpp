@@ -93,7 +93,8 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         command
             .add_option("--checkpoint", a.checkpoint,
                         "Keeps finished rows of form factors in a file, every minute and when interrupted, and the "
-                        "solver's state in FILE.solver, every minute; removed at the end")
+                        "solver's state in FILE.solver, every minute, also that of solvers without form factors; "
+                        "removed at the end")
             ->type_name("FILE")
             ->group("Run");
     command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")

@@ -24,8 +24,19 @@ void addMaterial(Checksum& sum, const Material& material) {
     sum.add(static_cast<std::uint64_t>(std::lround(1e6F * material.opacityCutoff)));
 }
 
-/// All of a scene and its mesh that rays can tell apart, and what the patches reflect and emit.
-std::uint64_t checksumOf(const PatchMesh& mesh, const Scene& scene) {
+/// Repair works on more than the matrix.
+void requireRoomForRepair(const FormFactorMatrix& matrix, const TransportOptions& transport) {
+    const double bytes = kRepairBytes * static_cast<double>(matrix.entryCount()) + static_cast<double>(matrix.bytes());
+    if (bytes <= static_cast<double>(transport.memoryLimit)) return;
+    throw SystemError(fmt::format("--repair: {} factors take about {:.2g} GiB while they are repaired, --memory-limit "
+                                  "allows {:.2g}; take fewer patches",
+                                  matrix.entryCount(), bytes / 1073741824.0,
+                                  static_cast<double>(transport.memoryLimit) / 1073741824.0));
+}
+
+} // namespace
+
+std::uint64_t sceneChecksum(const PatchMesh& mesh, const Scene& scene) {
     Checksum sum;
     sum.add(scene.positions);
     for (const Polygon& polygon : scene.polygons) {
@@ -47,18 +58,6 @@ std::uint64_t checksumOf(const PatchMesh& mesh, const Scene& scene) {
     return sum.value();
 }
 
-/// Repair works on more than the matrix.
-void requireRoomForRepair(const FormFactorMatrix& matrix, const TransportOptions& transport) {
-    const double bytes = kRepairBytes * static_cast<double>(matrix.entryCount()) + static_cast<double>(matrix.bytes());
-    if (bytes <= static_cast<double>(transport.memoryLimit)) return;
-    throw SystemError(fmt::format("--repair: {} factors take about {:.2g} GiB while they are repaired, --memory-limit "
-                                  "allows {:.2g}; take fewer patches",
-                                  matrix.entryCount(), bytes / 1073741824.0,
-                                  static_cast<double>(transport.memoryLimit) / 1073741824.0));
-}
-
-} // namespace
-
 std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, const Scene& scene,
                            const std::string& version) {
     const TransportOptions& o = plan.options;
@@ -66,7 +65,7 @@ std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, con
     if (hasResolution(o.method)) text += o.randomRotation ? ", random rotation" : ", fixed rotation";
     if (hasLines(o.method)) text += fmt::format(", {}", nameOf(o.sampler));
     return text + fmt::format(", seed {}, {}, {} patches, scene {:016x}", o.seed,
-                              o.storage ? nameOf(*o.storage) : "not stored", mesh.size(), checksumOf(mesh, scene));
+                              o.storage ? nameOf(*o.storage) : "not stored", mesh.size(), sceneChecksum(mesh, scene));
 }
 
 FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,

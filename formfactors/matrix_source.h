@@ -4,6 +4,7 @@
 #include "formfactors/repair.h"
 #include "formfactors/transport.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -35,6 +36,9 @@ SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, cons
 /// if the file has areas, and rows that sum to 1 within 1 %.
 FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,
                               const TransportOptions& transport);
+
+/// A check sum of all of a scene and its mesh that rays can tell apart, and what the patches reflect and emit.
+std::uint64_t sceneChecksum(const PatchMesh& mesh, const Scene& scene);
 
 /// One line that names all that the rows of a planned matrix depend on.
 std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, const Scene& scene,

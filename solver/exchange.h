@@ -80,6 +80,13 @@ public:
         return lines_[patch] > 0 ? static_cast<float>(backs_[patch]) / static_cast<float>(lines_[patch]) : 0.0F;
     }
 
+    /// Passes the counts to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(lines_);
+        archive(backs_);
+    }
+
 private:
     static void increase(std::uint32_t& number, std::uint32_t by) {
         std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);

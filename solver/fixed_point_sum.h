@@ -34,7 +34,7 @@ public:
     explicit FixedPointSums(std::size_t count) : units_(3 * count, 0) {}
 
     std::size_t size() const { return units_.size() / 3; }
-    /// For each channel of each sum. Only while all sums are 0.
+    /// For each channel of each sum. Only while all sums are 0, or once they were restored, to the scale they had.
     void setScale(const FixedPointScale& scale) { scale_ = scale; }
 
     /// From any thread.
@@ -60,6 +60,12 @@ public:
         const RgbSum sum = (*this)[index];
         for (std::size_t c = 0; c < 3; ++c) units_[3 * index + c] = 0;
         return sum;
+    }
+
+    /// Passes the sums, without their scale, to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(units_);
     }
 
 private:

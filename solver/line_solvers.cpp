@@ -15,7 +15,7 @@ std::uint64_t mostRays(const LineSolverOptions& o) { return o.rays.value_or(Line
 double target(const LineSolverOptions& o) { return o.targetError.value_or(o.rays ? 0.0 : o.kTargetError); }
 
 StochasticSolution relax(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& o,
-                         Progress& progress) {
+                         Progress& progress, const SolverContext& context) {
     StochasticRelaxationOptions options;
     options.rays = mostRays(o);
     options.targetError = target(o);
@@ -23,17 +23,17 @@ StochasticSolution relax(const SolverProblem& problem, const RayCaster& rays, co
     options.lineSet = o.lineSet;
     options.sampler = o.sampler;
     options.seed = o.seed;
-    return solveStochasticRelaxation(problem, rays, options, progress);
+    return solveStochasticRelaxation(problem, rays, options, progress, context);
 }
 
 StochasticSolution walk(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& o,
-                        Progress& progress) {
+                        Progress& progress, const SolverContext& context) {
     RandomWalkOptions options;
     options.walks = mostRays(o);
     options.targetError = target(o);
     options.sampler = o.sampler;
     options.seed = o.seed;
-    return solveRandomWalks(problem, rays, options, progress);
+    return solveRandomWalks(problem, rays, options, progress, context);
 }
 
 } // namespace
@@ -51,9 +51,18 @@ void checkLineSolver(const LineSolverOptions& o) {
 }
 
 StochasticSolution solveByLines(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& options,
-                                Progress& progress) {
+                                Progress& progress, const SolverContext& context) {
     checkLineSolver(options);
-    return (options.method == SolverMethod::RandomWalk ? walk : relax)(problem, rays, options, progress);
+    return (options.method == SolverMethod::RandomWalk ? walk : relax)(problem, rays, options, progress, context);
+}
+
+std::string lineSolverIdentity(const SolverProblem& problem, const LineSolverOptions& o) {
+    const char* const lines = o.lines == RelaxationLines::Local ? "local lines"
+                              : o.lineSet == LineSet::Chords    ? "global chords"
+                                                                : "global bundles";
+    return fmt::format("{}, {}, {}, at most {} rays, target error {}, seed {}, {} patches, light {:016x}",
+                       nameOf(o.method), lines, nameOf(o.sampler), mostRays(o), target(o), o.seed, problem.size(),
+                       problem.checksum());
 }
 
 } // namespace lambert

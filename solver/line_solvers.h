@@ -6,11 +6,13 @@
 #include "scene/ray_caster.h"
 #include "solver/problem.h"
 #include "solver/solver.h"
+#include "solver/solver_checkpoint.h"
 #include "solver/stochastic_relaxation.h"
 #include "solver/stochastic_solution.h"
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace lambert {
 
@@ -31,9 +33,12 @@ struct LineSolverOptions {
 /// Throws UsageError for what can be known to be wrong without a problem.
 void checkLineSolver(const LineSolverOptions& options);
 
-/// Solves the problem without form factors. `rays` are of the scene of its mesh. Throws UsageError as above, Cancelled. A
-/// target error that was not reached is none.
+/// Solves the problem without form factors. `rays` are of the scene of its mesh. Throws UsageError as above, Cancelled, what a
+/// checkpoint throws. A target error that was not reached is no error.
 StochasticSolution solveByLines(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& options,
-                                Progress& progress);
+                                Progress& progress, const SolverContext& context = {});
+
+/// One line that names all that the solution depends on, but for the scene that the rays meet.
+std::string lineSolverIdentity(const SolverProblem& problem, const LineSolverOptions& options);
 
 } // namespace lambert

@@ -22,6 +22,11 @@ public:
 
     /// Restarts the patches' sequences.
     void restart();
+    /// Passes how far these are to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(next_);
+    }
     /// Sets the scale of `received` (#patches, all 0) and adds to it, to `losses` and to `counts`. Returns the number of rays. Throws
     /// Cancelled.
     std::uint64_t exchange(const ExchangeInput& input, FixedPointSums& received, Losses& losses, LineCounts& counts,

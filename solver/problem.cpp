@@ -1,5 +1,6 @@
 #include "solver/problem.h"
 
+#include "core/checksum.h"
 #include "core/error.h"
 
 #include <glm/geometric.hpp>
@@ -35,6 +36,15 @@ std::vector<RgbSum> SolverProblem::startRadiosity(std::span<const RgbSum> start)
     std::vector<RgbSum> result = emitted();
     for (std::size_t i = 0; i < start.size(); ++i) result[i] = radiosity(i, start[i]);
     return result;
+}
+
+std::uint64_t SolverProblem::checksum() const {
+    Checksum sum;
+    sum.add(mesh_.area);
+    sum.add(mesh_.reflectance);
+    sum.add(mesh_.emittedRadiosity);
+    sum.add(direct_);
+    return sum.value();
 }
 
 double SolverProblem::sumOfSquares(std::span<const RgbSum> values) const {

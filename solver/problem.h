@@ -3,6 +3,7 @@
 #include "meshing/patch_mesh.h"
 #include "solver/solution.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,9 @@ public:
     double relativeNorm(std::span<const RgbSum> values) const;
     /// The same from the sum of squares.
     double relativeNorm(double sumOfSquares) const;
+
+    /// A check sum of all of this.
+    std::uint64_t checksum() const;
 
 private:
     double sumOfSquares(std::span<const RgbSum> values) const;

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "core/stopwatch.h"
 #include "solver/exchange.h"
 #include "solver/ordered_sum.h"
 #include "solver/patch_rays.h"
@@ -13,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace lambert {
@@ -20,6 +21,7 @@ namespace lambert {
 namespace {
 
 constexpr std::uint64_t kWalksPerBatch = 8192;
+constexpr std::uint64_t kBatchesPerState = 64; ///< or more: threads wait for each other before the state can be kept
 constexpr std::uint32_t kBirthStream = 0x42495254;
 constexpr std::uint32_t kSurvivalStream = 0x53555256;
 /// Of a walk. At the highest reflectance, 0.99, one in 10^71 goes on for longer.
@@ -58,7 +60,18 @@ public:
     const LineCounts& counts() const { return counts_; }
     std::uint64_t rays() const { return rays_; } ///< of all runs
 
-    void run(std::uint64_t walks, std::uint64_t seed, Progress& progress);
+    /// As RelaxationRun::run.
+    void run(std::uint64_t walks, std::uint64_t seed, Progress& progress, const std::function<void()>& afterBatches);
+
+    /// As RelaxationRun::keep.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(batches_);
+        archive(rays_);
+        archive(lost_);
+        received_.keep(archive);
+        counts_.keep(archive);
+    }
 
 private:
     struct Scratch {
@@ -83,12 +96,15 @@ private:
     LineCounts counts_;
     std::vector<Sender> sender_; ///< what a walk from the patch carries, and how many are born per m²
     std::vector<Rgb> light_;
+    LossUnits lost_; ///< of an unfinished run
     Losses losses_;
     double sourcePower_ = 0.0;
+    std::uint64_t batches_ = 0; ///< that are done of an unfinished run
     std::uint64_t rays_ = 0;
 };
 
-void WalkRun::run(std::uint64_t walks, std::uint64_t seed, Progress& progress) {
+void WalkRun::run(std::uint64_t walks, std::uint64_t seed, Progress& progress,
+                  const std::function<void()>& afterBatches) {
     const auto count = static_cast<double>(walks);
     forPatches(mesh_.size(), [&](std::size_t i) {
         const Rgb s(problem_.source(i));
@@ -100,21 +116,27 @@ void WalkRun::run(std::uint64_t walks, std::uint64_t seed, Progress& progress) {
     const RayAllotment allotment(mesh_, sender_,
                                  static_cast<double>(uniformFloat(philox({0, 0, 0, kBirthStream}, seed)[0])));
     std::vector<Scratch> scratch(static_cast<std::size_t>(threadCount()));
-    parallelFor((allotment.rays() + kWalksPerBatch - 1) / kWalksPerBatch, 1,
-                [&](std::size_t begin, std::size_t end, int worker) {
-                    for (std::size_t b = begin; b < end; ++b) {
-                        const std::uint64_t first = b * kWalksPerBatch;
-                        const std::uint64_t last = std::min(first + kWalksPerBatch, allotment.rays());
-                        walk(allotment, first, last, seed, scratch[static_cast<std::size_t>(worker)]);
-                        progress.advance(last - first);
-                    }
-                });
-    LossUnits lost;
-    for (const Scratch& s : scratch) {
-        lost += s.losses;
-        rays_ += s.rays;
+    const std::uint64_t all = (allotment.rays() + kWalksPerBatch - 1) / kWalksPerBatch;
+    const std::uint64_t atOnce = std::max(kBatchesPerState, 16 * static_cast<std::uint64_t>(threadCount()));
+    while (batches_ < all) {
+        const std::uint64_t now = std::min(atOnce, all - batches_);
+        parallelFor(now, 1, [&](std::size_t begin, std::size_t end, int worker) {
+            for (std::size_t b = batches_ + begin; b < batches_ + end; ++b) {
+                const std::uint64_t first = b * kWalksPerBatch;
+                const std::uint64_t last = std::min(first + kWalksPerBatch, allotment.rays());
+                walk(allotment, first, last, seed, scratch[static_cast<std::size_t>(worker)]);
+                progress.advance(last - first);
+            }
+        });
+        batches_ += now;
+        for (Scratch& s : scratch) {
+            lost_ += std::exchange(s.losses, {});
+            rays_ += std::exchange(s.rays, 0);
+        }
+        afterBatches();
     }
-    losses_ = lost.value(lossScale_);
+    batches_ = 0;
+    losses_ = std::exchange(lost_, {}).value(lossScale_);
     forPatches(mesh_.size(),
                [&](std::size_t i) { light_[i] = Rgb(problem_.direct(i) + received_.take(i) / problem_.area(i)); });
 }
@@ -202,20 +224,28 @@ void check(const RandomWalkOptions& o) {
 } // namespace
 
 StochasticSolution solveRandomWalks(const SolverProblem& problem, const RayCaster& rays,
-                                    const RandomWalkOptions& options, Progress& progress) {
+                                    const RandomWalkOptions& options, Progress& progress,
+                                    const SolverContext& context) {
     check(options);
-    const Stopwatch watch;
     const std::size_t count = problem.size();
     const SubRunSchedule schedule(options.walks, options.targetError, options.subRuns, count);
     SubRunStatistics statistics(problem);
     StochasticSolution solution;
     {
         WalkRun run(problem, rays, options);
-        progress.begin("random walks", options.walks);
+        const auto state = [&](auto& archive) {
+            statistics.keep(archive);
+            archive(solution.history);
+            run.keep(archive);
+        };
+        context.restore(state);
+        const SolverClock clock(solution.history);
+        progress.begin("random walks", options.walks - std::min(options.walks, statistics.rays()));
         while (const std::uint64_t walks = schedule.next(statistics)) {
-            run.run(walks, subRunSeed(options.seed, statistics.runs()), progress);
+            run.run(walks, subRunSeed(options.seed, statistics.runs()), progress, [&] { context.offer(state); });
             statistics.add(run.irradiance(), run.losses(), walks);
-            solution.history.push_back({statistics.runs(), statistics.relativeError(), watch.seconds()});
+            if (statistics.runs() > 1)
+                solution.history.push_back({statistics.runs(), statistics.relativeError(), clock.seconds()});
         }
         progress.end();
         solution.covered.reserve(count);

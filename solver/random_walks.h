@@ -4,6 +4,7 @@
 #include "core/sample_points.h"
 #include "scene/ray_caster.h"
 #include "solver/problem.h"
+#include "solver/solver_checkpoint.h"
 #include "solver/stochastic_solution.h"
 
 #include <cstdint>
@@ -35,8 +36,10 @@ struct RandomWalkOptions {
 ///
 /// P. Dutré, K. Bala, P. Bekaert, Advanced Global Illumination, section 6.4.
 ///
-/// `rays`, and what is thrown: as solveStochasticRelaxation.
+/// A checkpoint is offered the state every half a million walks, 56 bytes per patch. `rays`, and all else: as
+/// solveStochasticRelaxation.
 StochasticSolution solveRandomWalks(const SolverProblem& problem, const RayCaster& rays,
-                                    const RandomWalkOptions& options, Progress& progress);
+                                    const RandomWalkOptions& options, Progress& progress,
+                                    const SolverContext& context = {});
 
 } // namespace lambert

@@ -6,6 +6,7 @@
 #include "solver/local_exchange.h"
 #include "solver/stochastic_relaxation.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,8 +19,22 @@ public:
     /// All must outlive it.
     RelaxationRun(const SolverProblem& problem, const RayCaster& rays, const StochasticRelaxationOptions& options);
 
-    /// Spends about `rays` rays. Throws Cancelled.
-    void run(std::uint64_t rays, std::uint64_t seed, Progress& progress);
+    /// Spends about `rays` rays, or what is left of them if an unfinished run was restored. After every iteration there is a
+    /// state to keep(). Throws Cancelled, and what `afterIteration` throws.
+    void run(std::uint64_t rays, std::uint64_t seed, Progress& progress, const std::function<void()>& afterIteration);
+
+    /// Passes all that the rest of the run, of the same rays and seed, depends on to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(stage_);
+        archive(input_.iteration);
+        archive(rays_);
+        archive(losses_);
+        archive(sender_);
+        archive(light_);
+        local_.keep(archive);
+        counts_.keep(archive);
+    }
 
     std::span<const Rgb> irradiance() const { return light_; } //!< E of the last run
     const Losses& losses() const { return losses_; }           //!< of the last run
@@ -28,6 +43,15 @@ public:
     const LineCounts& counts() const { return counts_; } //!< of all runs
 
 private:
+    /// How far a run is.
+    struct Stage {
+        bool begun = false;
+        std::int32_t bounces = 0;    ///< that were shot
+        std::int32_t iterations = 0; ///< regular ones that are done
+        double power = 0.0;          ///< unshot
+        std::uint64_t shotRays = 0;  ///< of the shooting
+    };
+
     double area(std::size_t i) const { return problem_.area(i); }
     Rgb direct(std::size_t i) const { return Rgb(problem_.direct(i)); }
     Rgb source(std::size_t i) const { return Rgb(problem_.source(i)); }
@@ -35,7 +59,8 @@ private:
     Rgb radiosity(std::size_t i) const { return mesh_.emittedRadiosity[i] + reflected(i); }
     double meanReflectance() const;
 
-    void shoot(double rays, Progress& progress);
+    void begin();
+    void shoot(double rays, std::uint64_t seed, Progress& progress, const std::function<void()>& afterIteration);
     void gatherLocally(double rays, Progress& progress);
     void gatherGlobally(double lines, Progress& progress);
     std::uint64_t exchangeLocally(Losses& losses, Progress& progress);
@@ -56,6 +81,7 @@ private:
     std::vector<Sender> sender_;
     std::vector<Rgb> light_; ///< E; while shooting what of it has arrived, then the mean of all iterations
     ExchangeInput input_;
+    Stage stage_;
     Losses losses_;
     std::uint64_t rays_ = 0;
     double area_ = 0.0, rootArea_ = 0.0; ///< Σ A, Σ √A

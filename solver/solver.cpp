@@ -67,13 +67,7 @@ void checkSolver(const SolverOptions& o, bool warmStart) {
 
 std::string solverIdentity(const SolverProblem& problem, const SolverOptions& o, const SolverContext& context) {
     Checksum sum;
-    const auto add = [&](const auto& value) { sum.add(std::as_bytes(std::span(&value, 1))); };
-    for (std::size_t i = 0; i < problem.size(); ++i) {
-        add(problem.mesh().area[i]);
-        add(problem.mesh().reflectance[i]);
-        add(problem.mesh().emittedRadiosity[i]);
-        add(problem.direct(i));
-    }
+    sum.add(problem.checksum());
     sum.add(std::as_bytes(context.start));
     return fmt::format("{}, tolerance {}, {} bounces{}, relaxation {}, {} patches, light {:016x}", nameOf(o.method),
                        o.tolerance, o.bounces, o.keepBounces ? " kept" : "", o.relaxation.value_or(1.0), problem.size(),

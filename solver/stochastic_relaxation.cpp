@@ -1,12 +1,12 @@
 #include "solver/stochastic_relaxation.h"
 
 #include "core/error.h"
-#include "core/stopwatch.h"
 #include "solver/relaxation_run.h"
 #include "solver/sub_run_statistics.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace lambert {
@@ -33,21 +33,30 @@ void check(const StochasticRelaxationOptions& o) {
 } // namespace
 
 StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const RayCaster& rays,
-                                             const StochasticRelaxationOptions& options, Progress& progress) {
+                                             const StochasticRelaxationOptions& options, Progress& progress,
+                                             const SolverContext& context) {
     check(options);
-    const Stopwatch watch;
     const std::size_t count = problem.size();
     const SubRunSchedule schedule(options.rays, options.targetError, options.subRuns, count);
     SubRunStatistics statistics(problem);
     StochasticSolution solution;
     {
         RelaxationRun run(problem, rays, options);
-        progress.begin("stochastic relaxation", options.rays);
+        const auto state = [&](auto& archive) {
+            statistics.keep(archive);
+            archive(solution.unshot);
+            archive(solution.history);
+            run.keep(archive);
+        };
+        context.restore(state);
+        const SolverClock clock(solution.history);
+        progress.begin("stochastic relaxation", options.rays - std::min(options.rays, statistics.rays()));
         while (const std::uint64_t budget = schedule.next(statistics)) {
-            run.run(budget, subRunSeed(options.seed, statistics.runs()), progress);
+            run.run(budget, subRunSeed(options.seed, statistics.runs()), progress, [&] { context.offer(state); });
             statistics.add(run.irradiance(), run.losses(), run.rays());
             solution.unshot += run.unshot();
-            solution.history.push_back({statistics.runs(), statistics.relativeError(), watch.seconds()});
+            if (statistics.runs() > 1)
+                solution.history.push_back({statistics.runs(), statistics.relativeError(), clock.seconds()});
         }
         progress.end();
         solution.covered.reserve(count);

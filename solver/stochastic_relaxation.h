@@ -5,6 +5,7 @@
 #include "formfactors/isotropic_lines.h"
 #include "scene/ray_caster.h"
 #include "solver/problem.h"
+#include "solver/solver_checkpoint.h"
 #include "solver/stochastic_solution.h"
 
 #include <cstdint>
@@ -40,7 +41,7 @@ struct StochasticRelaxationOptions {
 /// reflected, is sent on until hardly any is left; p_i ∝ Σ_c ΔP_i^c, with the same power per ray throughout. Regular
 /// iterations follow, each E = E_0 + F (B_e + ρ E') from the mean E' of all before it, weighted by rays, in which the shooting
 /// counts as one. Lines are used both ways (see LocalExchange), about a constant control variate β near the area-weighted
-/// median of B. The sequences of the patches' lines go on from iteration to iteration.
+/// median of B. The sequences of the patches' lines go on from one regular iteration to the next.
 ///
 /// Every sub-run is unbiased but for `unshot` (and O(1/rays)), independent of the others, and the result is their mean.
 ///
@@ -48,10 +49,12 @@ struct StochasticRelaxationOptions {
 /// stochastic algorithms for radiosity", PhD thesis, K. U. Leuven 1999; P. Dutré, K. Bala, P. Bekaert, Advanced Global
 /// Illumination, section 6.3.
 ///
-/// `rays` is of the scene of the problem's mesh.
-/// The same bits for the same mesh, options and seed, whatever the number of threads. Throws UsageError for options out of
-/// range, Cancelled.
+/// `rays` is of the scene of the problem's mesh. A checkpoint is offered the state after every iteration, 64 bytes per patch; what
+/// the context has to start from is of no use here.
+/// The same bits for the same mesh, options and seed, whatever the number of threads and wherever it was stopped and resumed.
+/// Throws UsageError for options out of range, Cancelled, what a checkpoint throws.
 StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const RayCaster& rays,
-                                             const StochasticRelaxationOptions& options, Progress& progress);
+                                             const StochasticRelaxationOptions& options, Progress& progress,
+                                             const SolverContext& context = {});
 
 } // namespace lambert

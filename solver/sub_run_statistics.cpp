@@ -53,7 +53,8 @@ SubRunStatistics::SubRunStatistics(const SolverProblem& problem)
 
 void SubRunStatistics::add(std::span<const Rgb> irradiance, const Losses& losses, std::uint64_t rays) {
     rays_ += rays;
-    const auto weight = static_cast<double>(std::max<std::uint64_t>(rays, 1)); // no ray at all tells that little arrives
+    const auto weight =
+        static_cast<double>(std::max<std::uint64_t>(rays, 1)); // no ray at all tells that little arrives
     weight_ += weight;
     const double share = weight / weight_;
     const glm::dvec2 sums = orderedSum(problem_.size(), glm::dvec2(0.0), [&](std::size_t i) {
@@ -101,6 +102,7 @@ Rgb SubRunStatistics::standardError(std::size_t patch) const {
 
 double SubRunStatistics::relativeError() const {
     if (runs() < 2) return kInfinite;
+    if (!(meanSquare_ > 0.0)) return 0.0;
     const double squares = std::accumulate(deviations_.begin(), deviations_.end(), 0.0);
     return std::sqrt(squares / (weight_ * (runs() - 1)) / meanSquare_);
 }

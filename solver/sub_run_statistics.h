@@ -26,11 +26,25 @@ public:
     std::uint64_t rays() const { return rays_; } //!< of all runs
     /// Of the mean at a patch; 0 for fewer than two runs.
     Rgb standardError(std::size_t patch) const;
-    /// sqrt(Σ A |standard error|²) / sqrt(Σ A |E|²) over patches and channels: infinite for fewer than two runs.
+    /// sqrt(Σ A |standard error|²) / sqrt(Σ A |E|²) over patches and channels: infinite for fewer than two runs, 0 where no light
+    /// arrives.
     double relativeError() const;
     /// What the actual relative error, the same with the difference to the truth, exceeds once in twenty times at most. Infinite for
     /// fewer than three runs.
     double upperRelativeError() const;
+
+    /// Passes all that is known of the runs to an archive, see SolverCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(mean_);
+        archive(squares_);
+        archive(deviations_);
+        archive(meanSquare_);
+        archive(rays_);
+        archive(weight_);
+        archive(energy_);
+        archive(imbalanceSquares_);
+    }
 
     /// Sets all of the solution that follows from the runs; leaves nothing here.
     void finish(StochasticSolution& solution);

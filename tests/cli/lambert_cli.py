@@ -7,10 +7,12 @@ import base64
 import json
 import math
 import os
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -51,6 +53,14 @@ class ProgramTest(unittest.TestCase):
         report = self.folder / "report.json"
         self.run_well("bake", scene, "--json", report, "--quiet", *arguments)
         return read_json(report)
+
+    def killed(self, seconds, *arguments):
+        """Starts the program and kills it after so long; whether it was still running."""
+        with subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            time.sleep(seconds)
+            process.send_signal(signal.SIGKILL)
+            return process.wait() == -signal.SIGKILL
 
     def write(self, name, content):
         path = self.folder / name

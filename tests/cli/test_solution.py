@@ -1,12 +1,9 @@
 #!/usr/bin/env python3
 """Solution files: `bake --solution`, `bake --warm-start`, `compare bakes`, checkpoints of solvers."""
 import os
-import signal
-import subprocess
-import time
 import unittest
 
-from lambert_cli import DATA, INPUT, OK, PROGRAM, USAGE, Gltf, ProgramTest, png_size, read_json, run
+from lambert_cli import DATA, INPUT, OK, USAGE, Gltf, ProgramTest, png_size, read_json, run
 
 BOX = DATA / "cornell_box.obj"
 SMALL = ("--resolution", "32")  # and some patches
@@ -169,14 +166,6 @@ class Comparison(Solution):
 
 
 class Checkpoint(Solution):
-    def killed(self, seconds, *arguments):
-        """Starts the program and kills it after so long; whether it was still running."""
-        with subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL) as process:
-            time.sleep(seconds)
-            process.send_signal(signal.SIGKILL)
-            return process.wait() == -signal.SIGKILL
-
     def test_of_a_solve_that_was_killed_ends_with_the_same_bytes(self):
         # Shots whose rows are computed: the work is in the solve. States are written after every 25 shots.
         options = ("--patches", "400", "--hemicubes", "16", "--solver", "southwell", "--storage", "none", "--tolerance",
