@@ -101,7 +101,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     checkPicture(a.picture);
     std::vector<fs::path> inputs = inputFiles(a.scene);
     if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
-    checkPageFolder(a.output, a.run.json, inputs);
+    checkPageFolder(a.output, std::array{a.run.json}, inputs);
     requireGnuplot();
 
     applyThreads(a.run);

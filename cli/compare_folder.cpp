@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <system_error>
 
 namespace lambert {
@@ -23,13 +22,15 @@ std::vector<std::string> commaSeparated(const std::string& text) {
     return result;
 }
 
-void checkPageFolder(const fs::path& folder, const fs::path& json, std::span<const fs::path> inputs) {
+void checkPageFolder(const fs::path& folder, std::span<const fs::path> others, std::span<const fs::path> inputs) {
+    std::vector<fs::path> targets(others.begin(), others.end());
     std::error_code ignored;
     if (fs::exists(folder, ignored)) {
-        checkTargets(std::array{folder / "index.html", folder / "results.json", folder / "results.csv", json}, inputs);
+        for (const char* file : {"index.html", "results.json", "results.csv"}) targets.push_back(folder / file);
+        checkTargets(targets, inputs);
         return;
     }
-    checkTargets(std::array{json}, inputs);
+    checkTargets(targets, inputs);
     fs::path existing = fs::absolute(folder);
     while (existing.has_relative_path() && !fs::exists(existing, ignored)) existing = existing.parent_path();
     requireWritable(existing / "index.html");

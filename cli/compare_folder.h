@@ -15,8 +15,8 @@ namespace lambert {
 std::vector<std::string> commaSeparated(const std::string& text);
 
 /// What can keep the page from being written is found before the work: to be called before it. A folder that is missing is made
-/// after it. `json` may be empty. Throws UsageError, SystemError.
-void checkPageFolder(const std::filesystem::path& folder, const std::filesystem::path& json,
+/// after it. `others` are further files that will be written; empty ones are none. Throws UsageError, SystemError.
+void checkPageFolder(const std::filesystem::path& folder, std::span<const std::filesystem::path> others,
                      std::span<const std::filesystem::path> inputs);
 
 /// All files of the folder, their paths within it, or none. Throws SystemError.

@@ -130,7 +130,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     MeshOptions mesh = meshOptions(a.transport);
     mesh.refinement *= kCoarser;
     checkPicture(a.picture);
-    checkPageFolder(a.output, a.run.json, inputFiles(a.scene));
+    checkPageFolder(a.output, std::array{a.run.json}, inputFiles(a.scene));
     requireGnuplot();
 
     applyThreads(a.run);

@@ -53,6 +53,7 @@ BakeComparison compareBakes(const StoredSolution& reference, const StoredSolutio
         const std::size_t j = result.samePatches ? i : patchOf[i];
         all += weight;
         result.difference.push_back(0.0F);
+        result.excess.push_back(0.0F);
         if (j == kNone) {
             unmatched += weight;
             continue;
@@ -65,6 +66,7 @@ BakeComparison compareBakes(const StoredSolution& reference, const StoredSolutio
         }
         const RgbSum off = glm::abs(light[1] - light[0]);
         result.difference.back() = static_cast<float>((off.x + off.y + off.z) / 3.0);
+        result.excess.back() = static_cast<float>(mean[1].back() - mean[0].back());
     }
     result.unmatchedArea = unmatched / all;
     if (!(result.unmatchedArea <= kMostUnmatched))

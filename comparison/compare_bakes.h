@@ -15,6 +15,7 @@ struct BakeComparison {
     bool samePatches = false;      //!< false: B was looked up at the centres of A's patches
     double unmatchedArea = 0.0;    //!< share of A's area where B has no surface; left out
     std::vector<float> difference; //!< #patches of A: |B − A|, mean of the channels; 0 where unmatched
+    std::vector<float> excess;     //!< the same of B − A
 };
 
 /// How far the light of `other` is from that of `reference`, weighted by the reference's areas. Where their patches are not the

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Solution files: `bake --solution`, `bake --warm-start`, `compare bakes`, checkpoints of solvers."""
+import csv
 import os
 import unittest
 
-from lambert_cli import DATA, INPUT, OK, USAGE, Gltf, ProgramTest, png_size, read_json, run
+from lambert_cli import DATA, INPUT, OK, SYSTEM, USAGE, Gltf, ProgramTest, png_size, read_json, run
 
 BOX = DATA / "cornell_box.obj"
 SMALL = ("--resolution", "32")  # and some patches
@@ -163,6 +164,38 @@ class Comparison(Solution):
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()[1:]], ["mean", "red", "green", "blue"])
         width, height = png_size(picture)
         self.assertGreaterEqual((width, height), (64, 48))  # with the scale's bar
+
+
+class ComparisonFolder(Solution):
+    def test_holds_a_page_a_table_and_pictures(self):
+        a, _ = self.solve("a.glb", "--emit", "light=1,1,1")
+        b, _ = self.solve("b.glb", "--emit", "light=2,2,2", "--patches", "900")
+        out = self.folder / "new" / "out"
+        found = self.compare(a, b, "-o", out, "--size", "64x48", "--samples", "1", "--quiet")
+        pictures = ["a.png", "above.png", "b.png", "below.png", "difference.png"]
+        self.assertEqual(sorted(os.listdir(out)), sorted(["index.html", "results.csv", "results.json", *pictures]))
+        self.assertEqual(read_json(out / "results.json"), found)
+        with open(out / "results.csv", newline="", encoding="utf-8") as file:
+            rows = {row["channel"]: row for row in csv.DictReader(file)}
+        self.assertEqual(list(rows), ["mean", "red", "green", "blue"])
+        for key, value in found["overall"].items():
+            self.assert_close(float(rows["mean"][key]), value, 1e-8, key)
+        self.assertEqual(png_size(out / "a.png"), (64, 48))
+        page = (out / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("<img "), len(pictures))
+        for text in ("a.glb", "b.glb", "conjugate-gradient"):
+            self.assertIn(text, page)
+        # B is brighter nearly everywhere: nothing below, all above.
+        self.assertGreater((out / "above.png").stat().st_size, (out / "below.png").stat().st_size)
+
+    def test_that_cannot_be_written_is_refused_before_the_work(self):
+        a, _ = self.solve("a.glb")
+        self.write("file", b"")
+        done = run("compare", "bakes", a, a, "-o", self.folder / "file")
+        self.assertEqual(done.returncode, SYSTEM, done.stderr)
+        done = run("compare", "bakes", a, a, "-o", self.folder / "out", "--size", "0x1")
+        self.assertEqual(done.returncode, USAGE, done.stderr)
+        self.assertFalse((self.folder / "out").exists())
 
 
 class Checkpoint(Solution):
