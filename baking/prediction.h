@@ -12,15 +12,17 @@ namespace lambert {
 struct BakePrediction {
     std::size_t patches = 0;
     std::optional<TransportPlan> plan; //!< of form factors, as bakeScene makes it
-    std::uint64_t rays = 0;            //!< of all form factors, or of instant radiosity
+    std::uint64_t rays = 0;            //!< of all form factors, or of what finds the light without them
     double secondsPerRay = 0.0;        //!< with all threads
     BakeSeconds seconds;               //!< `mesh` is measured
     std::uint64_t peakMemory = 0;      //!< bytes, of the whole process
     std::uint64_t matrixBytes = 0;     //!< the part of it for the form factors
+    std::uint64_t lightBytes = 0;      //!< that for virtual point lights and where their light is gathered
 };
 
-/// Predicts bakeScene: meshes the scene, computes some form-factor rows, or light from some virtual point lights to some
-/// points, and extrapolates. Takes what meshing takes and a fraction of a second. Throws what bakeScene throws before it computes form factors.
+/// Predicts bakeScene: meshes the scene, computes some form-factor rows, or finds the light with few rays, and extrapolates. Takes what
+/// meshing takes and a fraction of a second; with a solver by lines also its passes over all patches. Throws what bakeScene
+/// throws before it computes form factors.
 BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progress& progress);
 
 } // namespace lambert

@@ -79,10 +79,10 @@ std::string transportText(const BakeArguments& a, const BakedScene& baked) {
 bool checkTarget(const BakeOptions& options, const BakedScene& baked, SceneLog& log) {
     if (baked.stochastic) {
         if (baked.stochastic->targetReached) return true;
-        log.warning(fmt::format("--target-error: {:.2g} is reached, with what is not known of it {:.2g}, after all of "
-                                "{:.3g} rays",
-                                baked.stochastic->relativeError, baked.stochastic->upperRelativeError,
-                                static_cast<double>(baked.stochastic->rays)));
+        log.warning(fmt::format("--target-error: missed after all of {:.3g} rays: the standard error is {:.2g} %, with "
+                                "what is not known of it {:.2g} %",
+                                static_cast<double>(baked.stochastic->rays), 100.0 * baked.stochastic->relativeError,
+                                100.0 * baked.stochastic->upperRelativeError));
         return false;
     }
     if (baked.instantRadiosity) return true; // it has none
@@ -231,7 +231,8 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
     const Stopwatch reading;
     const ReadResult read = readJob(a, job, log, progress);
     const double readSeconds = reading.seconds();
-    const BakePrediction predicted = predictBake(read.scene, bakeOptions(a.transport, a.run), progress);
+    const BakeOptions options = bakeOptions(a.transport, a.run);
+    const BakePrediction predicted = predictBake(read.scene, options, progress);
 
     double writeSeconds =
         kWriteSecondsPerPatch * static_cast<double>(predicted.patches) * static_cast<double>(job.outputs.size());
@@ -246,9 +247,7 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
                       {"patches", predicted.patches},
                       {"rays", predicted.rays},
                       {"peak_memory_bytes", predicted.peakMemory},
-                      {"options", usesVirtualLights(a.transport)
-                                      ? instantRadiosityOptionsJson(instantRadiosityOptions(a.transport, a.run))
-                                      : matrixOptionsJson(matrixSource(a.transport, a.run), predicted.plan)},
+                      {"options", methodOptionsJson(options, predicted.plan)},
                       {"form_factors", {{"bytes", predicted.matrixBytes}}},
                       {"seconds",
                        {{"read", readSeconds},

@@ -33,12 +33,7 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    if (baked.instantRadiosity)
-        options.update(instantRadiosityOptionsJson(instantRadiosityOptions(in.transport, in.run)));
-    else if (baked.stochastic)
-        options.update(lineSolverOptionsJson(lineSolverOptions(in.transport, in.run)));
-    else
-        options.update(matrixOptionsJson(matrixSource(in.transport, in.run), baked.plan));
+    options.update(methodOptionsJson(bakeOptions(in.transport, in.run), baked.plan));
     options.update(lightOptionsJson(in.transport.light));
     options["quality"] = in.transport.quality;
     if (!baked.stochastic && !baked.instantRadiosity) options.update(solverOptionsJson(solverOptions(in.transport)));
@@ -101,6 +96,12 @@ Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
 }
 
 } // namespace
+
+Json methodOptionsJson(const BakeOptions& options, const std::optional<TransportPlan>& plan) {
+    if (options.instantRadiosity) return instantRadiosityOptionsJson(*options.instantRadiosity);
+    if (usesLines(options.solver.method)) return lineSolverOptionsJson(options.lineSolver);
+    return matrixOptionsJson(options.formFactors, plan);
+}
 
 Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
     Json emit = Json::array(), reflectance = Json::array(), twoSided = Json::object();

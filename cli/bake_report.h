@@ -41,6 +41,9 @@ struct BakeReportInput {
 /// How the scene was read and what was changed of it, by options or by the overrides file.
 nlohmann::ordered_json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides);
 
+/// Of what finds the light: form factors, lines or virtual point lights.
+nlohmann::ordered_json methodOptionsJson(const BakeOptions& options, const std::optional<TransportPlan>& plan);
+
 /// The report of one bake; keys are documented in docs/output.md.
 nlohmann::ordered_json bakeReport(const BakeReportInput& input);
 

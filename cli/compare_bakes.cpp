@@ -2,8 +2,8 @@
 
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
-#include "cli/interrupt.h"
 #include "cli/compare_folder.h"
+#include "cli/interrupt.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"

@@ -47,6 +47,45 @@ TEST(Prediction, RowsWithoutRaysTakeTimeToo) {
     EXPECT_LT(predicted.secondsPerRay, 1e-3);
 }
 
+// Factors of 2: the error falls by another power in every scene, and times are those of a busy machine (not tested).
+TEST(Prediction, OfRandomLinesHasAboutTheRaysOfTheBake) {
+    Progress progress;
+    const Scene scene = roomWithBoxScene();
+    for (const SolverMethod method : {SolverMethod::Stochastic, SolverMethod::RandomWalk})
+        for (const bool toAnError : {true, false}) {
+            BakeOptions options = smallOptions();
+            options.solver.method = options.lineSolver.method = method;
+            if (toAnError)
+                options.lineSolver.targetError = 0.02;
+            else
+                options.lineSolver.rays = 1'000'000;
+            const BakePrediction predicted = predictBake(scene, options, progress);
+            const BakedScene baked = bakeScene(scene, options, progress);
+            EXPECT_EQ(predicted.patches, baked.mesh.size());
+            EXPECT_FALSE(predicted.plan.has_value());
+            const double ratio = static_cast<double>(predicted.rays) / static_cast<double>(baked.rayCount);
+            EXPECT_GT(ratio, toAnError ? 0.5 : 0.98);
+            EXPECT_LT(ratio, toAnError ? 2.0 : 1.02);
+            EXPECT_GT(predicted.seconds.solve, 0.0);
+        }
+}
+
+TEST(Prediction, OfRowsThatAreNotStoredHasAboutTheRaysOfTheBake) {
+    Progress progress;
+    const Scene scene = roomWithBoxScene();
+    BakeOptions options = smallOptions();
+    options.formFactors.transport.stored = false;
+    for (const SolverMethod method : {SolverMethod::Southwell, SolverMethod::ConjugateGradient, SolverMethod::Jacobi}) {
+        options.solver.method = method;
+        const BakePrediction predicted = predictBake(scene, options, progress);
+        const BakedScene baked = bakeScene(scene, options, progress);
+        const double ratio = static_cast<double>(predicted.rays) / static_cast<double>(baked.rayCount);
+        EXPECT_GT(ratio, 0.5) << nameOf(method);
+        EXPECT_LT(ratio, 2.0) << nameOf(method);
+        EXPECT_EQ(predicted.matrixBytes, 0U);
+    }
+}
+
 TEST(Prediction, SceneWithoutLightIsRefused) {
     Progress progress;
     const Material wall = greyMaterial("wall", 0.5F);

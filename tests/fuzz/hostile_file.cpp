@@ -2,6 +2,8 @@
 
 #include "sound_scene.h"
 
+#include "baking/solution_file.h"
+#include "comparison/compare_bakes.h"
 #include "core/error.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
@@ -127,6 +129,19 @@ void readImage(const ScratchFolder& folder, std::string_view input) {
     }
 }
 
+/// What was read can be shown, compared, and written again: then it reads as the same.
+void readSolutionFile(const ScratchFolder& folder, std::string_view input) {
+    const StoredSolution solution = readSolution(folder.write("solution.glb", input));
+    const Scene& scene = *solution.meshed.scene;
+    if (!scene.polygons.empty()) RayCaster(scene).bounds();
+    const SolutionRecord record{scene,           solution.meshed.mesh, solution.solution, solution.standardError,
+                                solution.origin, "of a test"};
+    const auto again = folder.write("again.glb", {});
+    writeSolution(record, again);
+    const BakeComparison comparison = compareBakes(solution, readSolution(again), Quantity::Radiosity);
+    require(comparison.samePatches && !(comparison.overall.maximum > 0.0), "a solution is written as it was read");
+}
+
 } // namespace
 
 void readHostileFile(std::string_view format, std::string_view input) {
@@ -134,6 +149,8 @@ void readHostileFile(std::string_view format, std::string_view input) {
     try {
         if (format == "image")
             readImage(folder, input);
+        else if (format == "solution")
+            readSolutionFile(folder, input);
         else
             readScene(folder, format, input);
     } catch (const InputError& error) {
