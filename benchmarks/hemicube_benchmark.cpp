@@ -5,8 +5,14 @@
 
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
+#include "core/process.h"
+#include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
 #include "scene/embree_scene.h"
+#include "solver/jacobi.h"
+
+#include <atomic>
+#include <numeric>
 
 namespace lambert {
 namespace {
@@ -57,7 +63,41 @@ void compareHemicube(benchmark::State& state, const BenchmarkScene& scene) {
     state.counters["hit"] = static_cast<double>(hits) / static_cast<double>(traced);
 }
 
+/// 50,000 patches: the whole matrix and Jacobi to 1e-4, and bare Embree tracing the same rays, on all threads.
+void largeMatrix(benchmark::State& state) {
+    const BenchmarkScene scene(readScene(LAMBERT_DATA "/cornell_box.obj").scene, 50'000);
+    const Hemicube hemicube(scene.mesh, scene.rays, {.resolution = kResolution});
+    Progress progress;
+    for (auto _ : state) {
+        Stopwatch watch;
+        const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Compact, progress);
+        state.counters["form_factors_s"] = watch.lap();
+        StoredRows rows(matrix);
+        const RadiositySolution solution = solveJacobi(SolverProblem(scene.mesh), rows, {}, progress);
+        state.counters["jacobi_s"] = watch.lap();
+        state.counters["residual"] = solution.residual;
+    }
+    const BareEmbree bare(scene.scene);
+    std::vector<double> seconds(static_cast<std::size_t>(threadCount()), 0.0);
+    std::atomic<std::size_t> hits = 0;
+    parallelFor(scene.mesh.size(), 16, [&](std::size_t begin, std::size_t end, int worker) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto patch = static_cast<std::uint32_t>(k);
+            const std::vector<RayPacket> packets = packetsOf(hemicube, scene.mesh, patch);
+            CpuStopwatch watch;
+            hits += trace(bare.handle(), hemicube.viewpoint(patch).origin, packets);
+            seconds[static_cast<std::size_t>(worker)] += watch.lap();
+        }
+    });
+    benchmark::DoNotOptimize(hits.load());
+    state.counters["bare_s"] = std::accumulate(seconds.begin(), seconds.end(), 0.0) / threadCount();
+    state.counters["rays"] = static_cast<double>(scene.mesh.size() * hemicube.raysPerRow());
+    state.counters["patches"] = static_cast<double>(scene.mesh.size());
+    state.counters["peak_GB"] = 1e-9 * static_cast<double>(peakMemoryBytes());
+}
+
 const bool registered = [] {
+    benchmark::RegisterBenchmark("large_matrix", largeMatrix)->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
     registerComparison("hemicube", 9, compareHemicube);
     return true;
 }();
