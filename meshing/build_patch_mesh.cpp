@@ -21,6 +21,7 @@ namespace lambert {
 namespace {
 
 constexpr double kMostPatches = 2e8;
+constexpr double kLongestOverEqual = 2.0; ///< of a patch's length to that of as many equal squares
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
 /// Collects the patches of one polygon after the other.
@@ -268,20 +269,22 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
     if (wanted > kMostPatches)
         throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
     const auto polygons = static_cast<double>(litPolygons(scene));
-    // With more polygons than that, at least the large ones must not stay whole: no patch is larger than it would be
-    // in a scene of large polygons.
-    if (polygons >= wanted)
-        return divide(scene, index, contacts, std::sqrt(totalArea(scene) / wanted), progress, counts);
+    // If small polygons use up the number, or almost, the large ones must not stay whole all the same.
+    const double equal = std::sqrt(totalArea(scene) / wanted);
+    const double longest = kLongestOverEqual * equal;
+    if (polygons >= wanted) return divide(scene, index, contacts, longest, progress, counts);
 
     // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
-    double length = std::sqrt(totalArea(scene) / wanted);
+    double length = equal;
     PatchMesh mesh = divide(scene, index, contacts, length, progress, counts);
     for (int attempt = 0; attempt < 5; ++attempt) {
         const auto found = static_cast<double>(mesh.size());
         if (std::abs(found / wanted - 1.0) < 0.03) break;
         // With few polygons their number is no bound: two patches of a quad are not two triangles.
         const double base = polygons < 0.5 * wanted ? 0.0 : polygons;
-        length *= std::sqrt(std::max(found - base, 1.0) / (wanted - base));
+        const double next = std::min(longest, length * std::sqrt(std::max(found - base, 1.0) / (wanted - base)));
+        if (next == length) break;
+        length = next;
         mesh = divide(scene, index, contacts, length, progress, counts);
     }
     return mesh;

@@ -10,7 +10,8 @@ namespace lambert {
 
 struct MeshOptions {
     std::optional<double> patchLength;  //!< longest edge of a patch, metres, > 0; none: chosen for `patches`
-    std::optional<std::size_t> patches; //!< about so many; 0 keeps the input's polygons; none: see defaultPatches
+    std::optional<std::size_t> patches; //!< about so many, more if polygons are many: none longer than twice
+                                        //!< equal squares; 0 keeps the input's; none: see defaultPatches
     double refinement = 1.0;            //!< factor on what defaultPatches adds to the polygons; > 0
     bool splitContacts = true;          //!< divide a polygon along the edges of others that stand on it
 };

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lambert {
 namespace {
@@ -105,6 +106,25 @@ TEST(BuildPatchMesh, MakesAboutAsManyPatchesAsWanted) {
             const auto found = static_cast<double>(buildPatchMesh(scene, options, progress).size());
             EXPECT_NEAR(found, static_cast<double>(wanted), 0.1 * static_cast<double>(wanted)) << name;
         }
+    }
+}
+
+TEST(BuildPatchMesh, KeepsNoLargePolygonWholeBecauseOfManySmallOnes) {
+    const Scene scene = dataScene("table_room.gltf"); // 520 polygons, walls of 11 to 21 m² among them
+    double area = 0.0;
+    for (const Polygon& polygon : scene.polygons) area += polygonArea(scene, polygon);
+    double before = std::numeric_limits<double>::infinity();
+    for (const double wanted : {260.0, 400.0, 500.0, 540.0, 600.0, 900.0, 1100.0, 2000.0}) {
+        Progress progress;
+        MeshOptions options;
+        options.patches = static_cast<std::size_t>(wanted);
+        MeshReport report;
+        const PatchMesh mesh = buildPatchMesh(scene, options, progress, &report);
+        const double longest = 2.0 * std::sqrt(area / wanted); // the contract
+        EXPECT_LE(report.patchLength, 1.0001 * longest) << wanted;
+        EXPECT_LE(report.patchLength, 1.03 * before) << wanted << ": more patches, larger ones"; // found to within 3 %
+        EXPECT_LE(*std::max_element(mesh.area.begin(), mesh.area.end()), 2.0 * longest * longest) << wanted;
+        before = report.patchLength;
     }
 }
 
