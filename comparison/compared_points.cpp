@@ -1,5 +1,6 @@
 #include "comparison/compared_points.h"
 
+#include "meshing/patch_offset.h"
 #include "rendering/camera_rays.h"
 #include "scene/environment.h"
 #include "scene/surface.h"
@@ -18,7 +19,7 @@ ComparedPoints patchCentres(const PatchMesh& mesh, const RayCaster& rays, std::v
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         if (!(mesh.area[i] > 0.0F)) continue;
         patches.push_back(i);
-        points.receivers.push_back({mesh.centroid[i], mesh.normal[i], rays.originOffset(std::sqrt(mesh.area[i]))});
+        points.receivers.push_back({mesh.centroid[i], mesh.normal[i], patchOriginOffset(rays, mesh, i)});
         points.weight.push_back(static_cast<double>(mesh.area[i]));
     }
     return points;

@@ -5,6 +5,7 @@
 #include "core/sample_points.h"
 #include "formfactors/closed_form.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 
 #include <glm/geometric.hpp>
 
@@ -56,7 +57,7 @@ EmitterLight::EmitterLight(const RayCaster& rays, const PatchMesh& mesh, std::ui
         emitter.radiosity = RgbSum(mesh.emittedRadiosity[i]);
         const auto wanted = std::max(points / static_cast<std::uint32_t>(patches.size()), 1U);
         emitter.points = pointsOf(mesh, i, (wanted + kPacket - 1) / kPacket * kPacket, seedOf(i, 0x454D4954, seed));
-        for (glm::vec3& point : emitter.points) point += rays.originOffset(std::sqrt(mesh.area[i])) * mesh.normal[i];
+        for (glm::vec3& point : emitter.points) point += patchOriginOffset(rays, mesh, i) * mesh.normal[i];
         emitters_.push_back(std::move(emitter));
     }
 }
@@ -75,7 +76,7 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, std::uint32_
     std::vector<RgbSum> result(mesh.size(), RgbSum(0.0));
     parallelFor(mesh.size(), 16, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t i = begin; i < end; ++i) {
-            const float lift = rays_.originOffset(std::sqrt(mesh.area[i]));
+            const float lift = patchOriginOffset(rays_, mesh, i);
             for (const glm::vec3& point : pointsOf(mesh, i, points, seedOf(i, 0x52454356, seed)))
                 result[i] += irradiance({point, mesh.normal[i], lift}) / static_cast<double>(points);
         }

@@ -7,6 +7,7 @@
 #include "core/vector_warps.h"
 #include "formfactors/hit_sum.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 
 #include <fmt/format.h>
 
@@ -83,7 +84,7 @@ void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
     const std::uint32_t count = options_.lines;
     makeDirections(seedOf(patch, 0x4C494E45, options_.seed), mesh_.normal[patch], lines);
     const LineArrays arrays(lines.coordinates, count);
-    const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[patch])) * mesh_.normal[patch];
+    const glm::vec3 offset = patchOriginOffset(rays_, mesh_, patch) * mesh_.normal[patch];
     PatchPoints(mesh_, patch)
         .fill(lines.points.data() + std::size_t{2} * count, count, offset, arrays.originX, arrays.originY,
               arrays.originZ);

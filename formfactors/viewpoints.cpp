@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "core/sample_points.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +28,7 @@ Viewpoint viewpoint(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t 
         const auto k = static_cast<std::uint32_t>(index);
         point = PatchPoints(mesh, patch).at({points.at(k, 0), points.at(k, 1)});
     }
-    Viewpoint result{point + rays.originOffset(std::sqrt(mesh.area[patch])) * mesh.normal[patch], 0.0F};
+    Viewpoint result{point + patchOriginOffset(rays, mesh, patch) * mesh.normal[patch], 0.0F};
     if (randomRotation) result.angle = viewAngle(patch, index, seed);
     return result;
 }

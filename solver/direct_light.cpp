@@ -7,6 +7,7 @@
 #include "core/warps.h"
 #include "formfactors/cell_sorter.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 #include "scene/environment.h"
 #include "scene/punctual_light.h"
 
@@ -233,7 +234,7 @@ std::vector<RgbSum> DirectLight::irradiance(const PatchMesh& mesh, const LightSo
     parallelFor(mesh.size(), 64, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t patch = begin; patch < end; ++patch) {
             const PatchPoints surface(mesh, patch);
-            const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh.area[patch])) * mesh.normal[patch];
+            const glm::vec3 offset = patchOriginOffset(rays_, mesh, patch) * mesh.normal[patch];
             result[patch] = gather(rays_, options_, {mesh.normal[patch], offset, &surface}, options_.points,
                                    seedOf(static_cast<std::uint32_t>(patch), 0x4C494748, options_.seed), sources);
         }

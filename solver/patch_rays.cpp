@@ -8,6 +8,7 @@
 #include "core/vector_warps.h"
 #include "formfactors/hit_sum.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 
 #include <algorithm>
 #include <array>
@@ -113,7 +114,7 @@ std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
     for (const RayRun& run : batch.runs) {
         const OrthonormalBasis frame(mesh_.normal[run.patch]);
         const PatchPoints points(mesh_, run.patch);
-        const glm::vec3 offset = rays_.originOffset(std::sqrt(mesh_.area[run.patch])) * frame.z;
+        const glm::vec3 offset = patchOriginOffset(rays_, mesh_, run.patch) * frame.z;
         const auto& corners = points.corners();
         const glm::vec3 a = corners[0] + offset;
         const std::array edges{corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]};

@@ -5,6 +5,7 @@
 #include "core/random.h"
 #include "core/sample_points.h"
 #include "formfactors/patch_sampling.h"
+#include "meshing/patch_offset.h"
 #include "solver/patch_rays.h"
 
 #include <fmt/format.h>
@@ -77,7 +78,7 @@ std::vector<Receiver> patchReceivers(const PatchMesh& mesh, const RayCaster& ray
             const auto key = philox({static_cast<std::uint32_t>(patch), 0, 0, 0x50504F49}, seed);
             const SamplePoints samples(Sampler::Sobol, points, 2, (std::uint64_t{key[0]} << 32) | key[1]);
             const PatchPoints surface(mesh, patch);
-            const float lift = rays.originOffset(std::sqrt(mesh.area[patch]));
+            const float lift = patchOriginOffset(rays, mesh, patch);
             for (std::uint32_t k = 0; k < points; ++k)
                 receivers[patch * points + k] = {surface.at({samples.at(k, 0), samples.at(k, 1)}), mesh.normal[patch],
                                                  lift};
