@@ -3,7 +3,6 @@
 
 #include "baking/bake_scene.h"
 #include "baking/probe.h"
-#include "core/stopwatch.h"
 #include "scene/scene_reader.h"
 #include "solver/stochastic_relaxation.h"
 
@@ -12,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -80,8 +80,12 @@ double errorToConverged(const PatchMesh& mesh, const RadiositySolution& solution
     return std::sqrt(squares / all);
 }
 
+/// Of all threads.
+double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 struct Arguments {
-    std::string scene, points, kind = "local";
+    std::string scene, points;
+    std::vector<std::string> kinds{"local"};
     std::size_t patches = 5000, finePatches = 0;
     double fewest = 1.4e5, most = 1.4e7, factor = std::sqrt(10.0), converged = 4e8;
     int seeds = 3;
@@ -120,38 +124,38 @@ void run(const Arguments& a) {
     std::vector<Reference> reference =
         a.points.empty() ? std::vector<Reference>{} : readReference(a.points, *scene.rays);
     if (a.finePatches > 0) takeFromFinerMesh(a, reference);
-    StochasticRelaxationOptions options;
-    options.lines = a.kind == "local" ? RelaxationLines::Local : RelaxationLines::Global;
-    options.lineSet = a.kind == "bundles" ? LineSet::Bundles : LineSet::Chords;
-    options.sampler = a.random ? Sampler::Random : Sampler::Sobol;
-    const auto solve = [&](double rays, std::uint64_t seed, RelaxationLines lines) {
-        StochasticRelaxationOptions o = options;
-        o.lines = lines;
+    const auto solve = [&](double rays, std::uint64_t seed, const std::string& kind) {
+        StochasticRelaxationOptions o;
+        o.lines = kind == "local" ? RelaxationLines::Local : RelaxationLines::Global;
+        o.lineSet = kind == "bundles" ? LineSet::Bundles : LineSet::Chords;
+        o.sampler = a.random ? Sampler::Random : Sampler::Sobol;
         o.rays = static_cast<std::uint64_t>(rays);
         o.seed = seed;
         return solveStochasticRelaxation(SolverProblem(scene.mesh), *scene.rays, o, progress);
     };
-    const StochasticSolution converged = solve(a.converged, 1000, RelaxationLines::Local);
+    const StochasticSolution converged = solve(a.converged, 1000, "local");
     scene.solution = converged;
     fmt::print("# {}, {} patches; converged to {:.3g} with {:.3g} rays, where the {} points err by {:.4f}\n", a.scene,
                scene.mesh.size(), converged.relativeError, static_cast<double>(converged.rays), reference.size(),
                errorAtPoints(scene, reference));
-    fmt::print("# lines,rays,seconds,stated error,error to converged,error at points (RMS of {} seeds)\n", a.seeds);
-    for (double rays = a.fewest; rays < 1.001 * a.most; rays *= a.factor) {
-        double count = 0.0, seconds = 0.0, stated = 0.0, toConverged = 0.0, atPoints = 0.0;
-        for (int seed = 1; seed <= a.seeds; ++seed) {
-            Stopwatch watch;
-            const StochasticSolution solution = solve(rays, static_cast<std::uint64_t>(seed), options.lines);
-            seconds += watch.seconds() / a.seeds;
-            count += static_cast<double>(solution.rays) / a.seeds;
-            stated += std::pow(solution.relativeError, 2.0) / a.seeds;
-            toConverged += std::pow(errorToConverged(scene.mesh, solution, converged), 2.0) / a.seeds;
-            scene.solution = solution;
-            atPoints += std::pow(errorAtPoints(scene, reference), 2.0) / a.seeds;
+    fmt::print("# lines,rays,CPU seconds,stated error,error to converged,error at points (RMS of {} seeds)\n", a.seeds);
+    for (const std::string& kind : a.kinds) {
+        for (double rays = a.fewest; rays < 1.001 * a.most; rays *= a.factor) {
+            double count = 0.0, seconds = 0.0, stated = 0.0, toConverged = 0.0, atPoints = 0.0;
+            for (int seed = 1; seed <= a.seeds; ++seed) {
+                const double before = cpuSeconds();
+                const StochasticSolution solution = solve(rays, static_cast<std::uint64_t>(seed), kind);
+                seconds += (cpuSeconds() - before) / a.seeds;
+                count += static_cast<double>(solution.rays) / a.seeds;
+                stated += std::pow(solution.relativeError, 2.0) / a.seeds;
+                toConverged += std::pow(errorToConverged(scene.mesh, solution, converged), 2.0) / a.seeds;
+                scene.solution = solution;
+                atPoints += std::pow(errorAtPoints(scene, reference), 2.0) / a.seeds;
+            }
+            fmt::print("{},{:.0f},{:.3f},{:.5f},{:.5f},{:.5f}\n", kind, count, seconds, std::sqrt(stated),
+                       std::sqrt(toConverged), std::sqrt(atPoints));
+            std::fflush(stdout);
         }
-        fmt::print("{},{:.0f},{:.3f},{:.5f},{:.5f},{:.5f}\n", a.kind, count, seconds, std::sqrt(stated),
-                   std::sqrt(toConverged), std::sqrt(atPoints));
-        std::fflush(stdout);
     }
 }
 
@@ -166,7 +170,8 @@ int main(int argc, char** argv) {
     program.add_option("--fine", a.finePatches,
                        "patches of a mesh whose converged solution gives E at the points instead");
     program.add_option("--patches", a.patches, "about so many [5000]");
-    program.add_option("--lines", a.kind, "local, chords or bundles")
+    program.add_option("--lines", a.kinds, "local, chords, bundles; several after each other [local]")
+        ->delimiter(',')
         ->check(CLI::IsMember({"local", "chords", "bundles"}));
     program.add_option("--fewest", a.fewest, "rays of the first solution [1.4e5]");
     program.add_option("--most", a.most, "rays of the last solution [1.4e7]");
