@@ -1,12 +1,14 @@
 #include "comparison/compare_bakes.h"
 
 #include "core/error.h"
+#include "scene/line_caster.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace lambert {
 
@@ -22,17 +24,47 @@ bool samePatches(const PatchMesh& a, const PatchMesh& b) {
     return a.frontCount == b.frontCount && a.corners == b.corners && a.positions == b.positions;
 }
 
+/// Of what a line to the centre of a patch crosses the patch on the same side; kNone if there is none. Where surfaces touch, that
+/// which is a front, or a second side, as the patch is.
+std::uint32_t patchAmong(std::span<const Crossing> crossings, const PatchMesh& mesh, bool front) {
+    std::uint32_t found = kNone;
+    for (const Crossing& crossing : crossings) {
+        std::uint32_t patch = mesh.lookup.patchAt(crossing.polygon, crossing.u, crossing.v);
+        if (!crossing.front) patch = mesh.lookup.backPatch(crossing.polygon, patch);
+        if (patch != kNone && crossing.front == front) return patch;
+        if (found == kNone) found = patch;
+    }
+    return found;
+}
+
 /// The patch of `other` at the centre of each patch of `mesh` and on the same side; kNone where there is none.
 std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedScene& other) {
-    if (other.scene->polygons.empty()) return std::vector<std::uint32_t>(mesh.size(), kNone);
-    const RayCaster rays(*other.scene);
     std::vector<std::uint32_t> result(mesh.size(), kNone);
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const float above = 4.0F * rays.originOffset(std::sqrt(mesh.area[i])); // centres are off by rounding
-        const auto hit = rays.closest({mesh.centroid[i] + above * mesh.normal[i], -mesh.normal[i], 2.0F * above});
-        if (!hit) continue;
-        const std::uint32_t front = other.mesh.lookup.patchAt(hit->polygon, hit->u, hit->v);
-        result[i] = hit->front ? front : other.mesh.lookup.backPatch(hit->polygon, front);
+    if (other.scene->polygons.empty()) return result;
+    const RayCaster rays(*other.scene);
+    const LineCaster lines(*other.scene);
+    LinePacket packet;
+    LineCrossings crossings;
+    constexpr std::size_t kLanes = LinePacket::kSize;
+    for (std::size_t first = 0; first < mesh.size(); first += kLanes) {
+        const std::size_t lanes = std::min(kLanes, mesh.size() - first);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::size_t i = first + std::min(lane, lanes - 1);
+            const float above = 4.0F * rays.originOffset(std::sqrt(mesh.area[i])); // centres are off by rounding
+            const glm::vec3 origin = mesh.centroid[i] + above * mesh.normal[i];
+            const glm::vec3 direction = -2.0F * above * mesh.normal[i];
+            packet.originX[lane] = origin.x;
+            packet.originY[lane] = origin.y;
+            packet.originZ[lane] = origin.z;
+            packet.directionX[lane] = direction.x;
+            packet.directionY[lane] = direction.y;
+            packet.directionZ[lane] = direction.z;
+            packet.active[lane] = lane < lanes ? -1 : 0;
+        }
+        lines.cross(packet, crossings);
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            result[first + lane] =
+                patchAmong(crossings[static_cast<int>(lane)], other.mesh, first + lane < mesh.frontCount);
     }
     return result;
 }

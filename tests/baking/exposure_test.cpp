@@ -72,10 +72,12 @@ TEST(DisplayColour, IsExposedAndClamped) {
     EXPECT_EQ(displayColour(Rgb(0.0625F, 0.25F, 3.0F), 1.0F), Rgb(0.125F, 0.5F, 1.0F));
     EXPECT_EQ(displayColour(Rgb(0.0F, 1.0F, 1e-30F), 1000.0F), Rgb(0.0F, 1.0F, 1.0F));
     EXPECT_EQ(displayColour(Rgb(3e38F), -1000.0F), Rgb(0.0F));
+    EXPECT_EQ(displayColour(Rgb(-2e-5F, -3e38F, 0.5F), 0.0F), Rgb(0.0F, 0.0F, 0.5F)); // noise of stochastic solvers
 }
 
 TEST(SrgbCurve, HasItsKnownValues) {
     EXPECT_EQ(srgbEncode(0.0F), 0.0F);
+    EXPECT_EQ(srgbEncode(-2e-5F), 0.0F);
     EXPECT_NEAR(srgbEncode(1.0F), 1.0F, 1e-6F);
     EXPECT_NEAR(srgbEncode(0.002F), 0.02584F, 1e-6F);                   // linear part: 12.92 x
     EXPECT_NEAR(srgbEncode(0.2140411F), 0.5F, 1e-6F);                   // middle of the display scale
