@@ -182,7 +182,7 @@ void solveStored(const BakeOptions& options, const Task& task, BakedScene& resul
     const FormFactorMatrix& matrix = obtained.matrix;
     result.plan = std::move(obtained.plan);
     result.repair = std::move(obtained.repair);
-    result.journal = std::move(obtained.journal);
+    result.matrixCheckpoint = std::move(obtained.checkpoint);
     result.rayCount = result.plan ? result.plan->rays : 0;
     StoredRows rows(matrix);
     for (std::size_t i = 0; i < matrix.size(); ++i)
@@ -234,7 +234,7 @@ std::filesystem::path solverCheckpointPath(const CheckpointOptions& rows, std::s
 }
 
 void removeCheckpoints(const BakedScene& baked) {
-    if (baked.journal) baked.journal->remove();
+    if (baked.matrixCheckpoint) baked.matrixCheckpoint->remove();
     for (const auto& checkpoint : baked.checkpoints) checkpoint->remove();
 }
 

@@ -53,9 +53,9 @@ struct BakedScene : MeshedScene {
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
-    std::optional<TransportPlan> plan{};      //!< of the form factors; none: read from a file, or not used
-    std::optional<RepairReport> repair{};     //!< of the form factors; none: not repaired
-    std::unique_ptr<MatrixJournal> journal{}; //!< see SceneMatrix
+    std::optional<TransportPlan> plan{};                  //!< of the form factors; none: read from a file, or not used
+    std::optional<RepairReport> repair{};                 //!< of the form factors; none: not repaired
+    std::unique_ptr<MatrixCheckpoint> matrixCheckpoint{}; //!< see SceneMatrix
     std::vector<std::unique_ptr<SolverCheckpoint>> checkpoints{}; //!< to be removed once the result is on the disk
     std::uint64_t rayCount = 0; //!< of the form factors, or of what found the light without them
     RowQuality rows{};

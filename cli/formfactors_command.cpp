@@ -88,7 +88,7 @@ struct Run {
     Json seconds = Json::object();
     Json report = Json::object();
     std::vector<std::string> warnings{};
-    std::unique_ptr<MatrixJournal> journal{};
+    std::unique_ptr<MatrixCheckpoint> checkpoint{};
     ExitCode exitCode = ExitCode::Ok;
 
     void warn(const std::string& text) {
@@ -249,9 +249,12 @@ void computePatches(Run& run) {
         run.progress.end();
     }
     run.seconds["write"] = watch.lap();
-    if (obtained.journal) {
-        run.report["resumed_rows"] = obtained.journal->restoredRows();
-        run.journal = std::move(obtained.journal);
+    if (obtained.checkpoint) {
+        if (obtained.checkpoint->rows)
+            run.report["resumed_rows"] = obtained.checkpoint->rows->restoredRows();
+        else
+            run.report["resumed_lines"] = obtained.checkpoint->restoredLines;
+        run.checkpoint = std::move(obtained.checkpoint);
     }
 }
 
@@ -293,7 +296,7 @@ ExitCode formFactors(const FormFactorsArguments& a) {
     else
         computePatches(run);
     if (!a.run.json.empty()) writeReport(run, total.seconds());
-    if (run.journal) run.journal->remove();
+    if (run.checkpoint) run.checkpoint->remove();
     return run.exitCode;
 }
 

@@ -25,6 +25,9 @@ bool sameFile(const fs::path& a, const fs::path& b) {
 void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> inputs) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
         if (targets[i].empty()) continue;
+        if (targets[i].native().starts_with("--"))
+            throw UsageError(fmt::format("{0}: is an option where a file is to be named; if it is one, write ./{0}",
+                                         targets[i].string()));
         for (const fs::path& input : inputs)
             if (sameFile(targets[i], input))
                 throw UsageError(fmt::format("{}: would overwrite {}", targets[i].string(),

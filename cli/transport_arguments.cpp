@@ -27,7 +27,6 @@ void refuseUnused(const TransportArguments& a, TransportMethod method) {
     }
     if (a.lineSet && method != TransportMethod::GlobalLines) refuse("--line-set");
     if (a.formFactorError && method != TransportMethod::ClosedForm) refuse("--form-factor-error");
-    if (!a.checkpoint.empty() && !hasRows(method)) refuse("--checkpoint");
 }
 
 /// A solver that computes its rows takes them as they come.

@@ -6,19 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <istream>
-#include <limits>
-#include <ostream>
-#include <string_view>
 #include <utility>
 
 namespace lambert {
 
 namespace {
 
-constexpr std::string_view kMagic = "lambert global lines 1\n";
 constexpr std::size_t kBlocks = 256;                         ///< of rows, about
 constexpr std::size_t kEntriesAtOnce = std::size_t{1} << 24; ///< 128 MB
 
@@ -32,19 +26,6 @@ std::uint32_t readNumber(const std::uint8_t*& byte) {
     std::uint32_t number = *byte & 0x7FU;
     for (int shift = 7; (*byte++ & 0x80U) != 0; shift += 7) number |= (*byte & 0x7FU) << shift;
     return number;
-}
-
-[[noreturn]] void refuse(std::string_view what) { throw InputError(fmt::format("counts of global lines: {}", what)); }
-
-std::uint64_t readNumber(std::istream& in) {
-    std::uint64_t number = 0;
-    for (int shift = 0; shift < 63; shift += 7) {
-        const int byte = in.get();
-        if (byte == std::istream::traits_type::eof()) refuse("the file ends too early");
-        number |= static_cast<std::uint64_t>(byte & 0x7F) << shift;
-        if ((byte & 0x80) == 0) return number;
-    }
-    refuse("found a number of more than 63 bits");
 }
 
 } // namespace
@@ -239,53 +220,6 @@ FormFactorMatrix GlobalLineCounts::matrix(MatrixStorage storage, Progress& progr
     }
     progress.end();
     return result;
-}
-
-void GlobalLineCounts::save(std::ostream& out) const {
-    std::vector<std::uint8_t> number;
-    const auto put = [&](std::uint64_t value) {
-        number.clear();
-        writeNumber(number, value);
-        out.write(reinterpret_cast<const char*>(number.data()), static_cast<std::streamsize>(number.size()));
-    };
-    out << kMagic;
-    put(size());
-    put(lines_);
-    for (const std::vector<std::uint8_t>& row : rows_) {
-        put(row.size());
-        out.write(reinterpret_cast<const char*>(row.data()), static_cast<std::streamsize>(row.size()));
-    }
-}
-
-GlobalLineCounts GlobalLineCounts::load(std::istream& in) {
-    std::array<char, kMagic.size()> magic{};
-    in.read(magic.data(), magic.size());
-    if (!in || std::string_view(magic.data(), magic.size()) != kMagic) refuse("the file does not begin as such a file");
-    const std::uint64_t patches = readNumber(in);
-    if (patches > SpanLog::kMostPatches)
-        refuse(fmt::format("found {} patches, allowed are at most {}", patches, SpanLog::kMostPatches));
-    GlobalLineCounts counts(0);
-    counts.lines_ = readNumber(in);
-    if (counts.lines_ > std::numeric_limits<std::uint32_t>::max()) refuse("found more than 2^32 - 1 lines");
-    for (std::uint64_t row = 0; row < patches; ++row) {
-        std::vector<std::uint8_t> bytes;
-        // Number by number: whatever the file says, nothing is allocated that it does not hold.
-        const std::uint64_t size = readNumber(in);
-        std::uint64_t column = row;
-        while (bytes.size() < size) {
-            const std::uint64_t step = readNumber(in);
-            const std::uint64_t count = readNumber(in);
-            column += step + 1;
-            if (step > patches || column >= patches + 2 || count == 0 || count > counts.lines_)
-                refuse(fmt::format("row {} holds what cannot be", row));
-            writeNumber(bytes, step);
-            writeNumber(bytes, count);
-        }
-        if (bytes.size() != size) refuse(fmt::format("row {} is not as long as it says", row));
-        bytes.shrink_to_fit();
-        counts.rows_.push_back(std::move(bytes));
-    }
-    return counts;
 }
 
 } // namespace lambert

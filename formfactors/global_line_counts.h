@@ -4,7 +4,6 @@
 #include "formfactors/form_factor_matrix.h"
 
 #include <cstdint>
-#include <iosfwd>
 #include <span>
 #include <vector>
 
@@ -61,10 +60,12 @@ public:
     /// N_i / A_i, as repair() wants it: its merge then gives X_ij = (N_ij + N_ji) / (N_i / A_i + N_j / A_j). `area`: #patches.
     std::vector<double> repairWeights(std::span<const float> area) const;
 
-    /// The whole state, the same bytes on every machine and for the same counts. Errors are left in the stream.
-    void save(std::ostream& out) const;
-    /// What save() wrote. Throws InputError for anything else.
-    static GlobalLineCounts load(std::istream& in);
+    /// Passes the counts to an archive, see StateCheckpoint.
+    template <typename Archive>
+    void keep(Archive& archive) {
+        archive(lines_);
+        archive(rows_);
+    }
 
     bool operator==(const GlobalLineCounts&) const = default;
 

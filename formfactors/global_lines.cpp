@@ -35,8 +35,7 @@ void GlobalLines::traceBlock(std::uint64_t block, Scratch& scratch) const {
         spans_.visit(packet, scratch.spans, [&](std::uint32_t a, std::uint32_t b) { scratch.log.add(a, b); });
 }
 
-void GlobalLines::trace(GlobalLineCounts& counts, Progress& progress,
-                        const std::function<void(const GlobalLineCounts&)>& afterBatch) const {
+void GlobalLines::trace(GlobalLineCounts& counts, Progress& progress, const std::function<void()>& afterBatch) const {
     const std::uint64_t perBlock = lines_.linesPerBlock();
     std::uint64_t block = (counts.lines() + perBlock - 1) / perBlock;
     if (counts.size() != mesh_.size() || block > lines_.blockCount() || lines_.linesBefore(block) != counts.lines())
@@ -63,7 +62,7 @@ void GlobalLines::trace(GlobalLineCounts& counts, Progress& progress,
         for (std::size_t k = 0; k < logs.size(); ++k) scratch[k].log = std::move(logs[k]);
         block += blocks;
         batch = std::max(kSmallestBatch, std::min(counts.lines() / 2, lines * kSpansPerBatch / (spans + 1)));
-        if (afterBatch) afterBatch(counts);
+        if (afterBatch) afterBatch();
     }
     progress.end();
 }

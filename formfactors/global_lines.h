@@ -24,8 +24,7 @@ public:
     /// Traces the lines that `counts` (of this mesh) does not hold yet: all of them, or after an interruption those that
     /// are left, with the same result. After each batch of lines, `afterBatch` may save the counts. Throws Cancelled, with
     /// `counts` as after the last batch, and UsageError if the counts are not of this mesh and these options.
-    void trace(GlobalLineCounts& counts, Progress& progress,
-               const std::function<void(const GlobalLineCounts&)>& afterBatch = {}) const;
+    void trace(GlobalLineCounts& counts, Progress& progress, const std::function<void()>& afterBatch = {}) const;
 
     /// All at once: the rows of all patches.
     FormFactorMatrix matrix(MatrixStorage storage, Progress& progress) const;

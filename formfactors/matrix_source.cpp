@@ -102,9 +102,10 @@ SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, cons
     } else {
         result.plan = planTransport(source.transport, mesh, rays, progress);
         if (!source.checkpoint.path.empty())
-            result.journal = std::make_unique<MatrixJournal>(
-                source.checkpoint, matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
-        TransportMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.journal.get());
+            result.checkpoint =
+                std::make_unique<MatrixCheckpoint>(source.checkpoint, result.plan->options.method,
+                                                   matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
+        TransportMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.checkpoint.get());
         result.matrix = std::move(computed.matrix);
         weights = std::move(computed.repairWeights);
     }

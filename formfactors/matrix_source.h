@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formfactors/matrix_journal.h"
+#include "formfactors/matrix_checkpoint.h"
 #include "formfactors/repair.h"
 #include "formfactors/transport.h"
 
@@ -23,9 +23,9 @@ struct MatrixSource {
 
 struct SceneMatrix {
     FormFactorMatrix matrix;
-    std::optional<TransportPlan> plan;      //!< none: from a file
-    std::optional<RepairReport> repair;     //!< none: not asked for
-    std::unique_ptr<MatrixJournal> journal; //!< to be removed once what is made of the matrix is on the disk
+    std::optional<TransportPlan> plan;            //!< none: from a file
+    std::optional<RepairReport> repair;           //!< none: not asked for
+    std::unique_ptr<MatrixCheckpoint> checkpoint; //!< to be removed once what is made of the matrix is on the disk
 };
 
 /// Reads or computes the form factors of a mesh. `rays` are of `rays.scene()`, which the mesh is of. Throws UsageError,

@@ -7,7 +7,7 @@
 #include "formfactors/hemicube.h"
 #include "formfactors/hemisphere.h"
 #include "formfactors/local_lines.h"
-#include "formfactors/matrix_journal.h"
+#include "formfactors/matrix_checkpoint.h"
 
 #include <fmt/format.h>
 
@@ -115,6 +115,21 @@ bool planMemory(TransportPlan& plan, double patches, double entriesPerRow) {
     return plan.bytes <= limit;
 }
 
+/// All lines, or those that the checkpoint does not hold yet.
+void traceLines(const GlobalLines& lines, GlobalLineCounts& counts, Progress& progress, MatrixCheckpoint* checkpoint) {
+    if (!checkpoint) return lines.trace(counts, progress);
+    StateCheckpoint& file = checkpoint->lines.value();
+    const auto state = [&](auto& archive) { counts.keep(archive); };
+    file.restore(state);
+    checkpoint->restoredLines = counts.lines();
+    try {
+        lines.trace(counts, progress, [&] { file.offer(state); });
+    } catch (const Cancelled&) {
+        file.keep(state);
+        throw;
+    }
+}
+
 } // namespace
 
 std::optional<TransportMethod> methodByName(std::string_view name) {
@@ -220,15 +235,17 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
 }
 
 TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                              Progress& progress, MatrixJournal* journal) {
+                              Progress& progress, MatrixCheckpoint* checkpoint) {
     const TransportOptions& o = plan.options;
     const MatrixStorage storage = o.storage.value();
-    if (hasRows(o.method))
+    if (hasRows(o.method)) {
+        MatrixJournal* const journal = checkpoint ? &checkpoint->rows.value() : nullptr;
         return {computeMatrix(*makeMethod(plan, mesh, rays), storage, progress, journal), repairWeights(mesh)};
+    }
     const LineCaster caster(rays.scene());
     GlobalLineOptions options{.lines = o.lines.value(), .set = o.lineSet, .sampler = o.sampler, .seed = o.seed};
     GlobalLineCounts counts(mesh.size());
-    GlobalLines(mesh, caster, options).trace(counts, progress);
+    traceLines(GlobalLines(mesh, caster, options), counts, progress, checkpoint);
     return {counts.matrix(storage, progress), counts.repairWeights(mesh.area)};
 }
 

@@ -17,7 +17,7 @@
 
 namespace lambert {
 
-class MatrixJournal;
+class MatrixCheckpoint;
 
 /// The one place where a way to compute form factors is made from its name and options: what a new method needs beside its
 /// own files is a line in each table and switch of transport.cpp.
@@ -80,10 +80,10 @@ struct TransportMatrix {
     std::vector<double> repairWeights; //!< #patches, see repair()
 };
 
-/// The matrix. With a journal, which only methods with rows can have, rows that it holds are taken from it and all others
-/// entered. Throws Cancelled; of the journal SystemError.
+/// The matrix. With a checkpoint, what that holds is taken from it, and all else entered as it is finished. Throws Cancelled; of
+/// the checkpoint InputError, SystemError.
 TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
-                              Progress& progress, MatrixJournal* journal = nullptr);
+                              Progress& progress, MatrixCheckpoint* checkpoint = nullptr);
 
 /// Weights of rows that are computed alike.
 std::vector<double> repairWeights(const PatchMesh& mesh);

@@ -58,6 +58,10 @@ class WrongOptions(ErrorTest):
             for value in values:
                 self.assert_refused(option, value, says=option.strip("-").replace("-", " ").split()[0])
 
+    def test_an_option_is_no_file(self):
+        for option in ("--json", "-o", "--image", "--solution"):
+            self.assert_refused(option, "--quiet", says="--quiet")
+
     def test_options_that_exclude_each_other(self):
         self.assert_refused("--patches", "10", "--patch-length", "0.1", says="--patch")
 

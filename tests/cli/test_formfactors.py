@@ -72,7 +72,6 @@ class Report(FormFactorsTest):
                                                    self.folder / "m.npy"))
         self.refused(USAGE, CUBE, "--resolution", 63, "-o", self.folder / "m.npy")
         self.refused(USAGE, CUBE)
-        self.refused(USAGE, CUBE, "--method", "global-lines", "--checkpoint", self.folder / "c", "-o", self.folder / "m.npy")
         self.refused(USAGE, CUBE, "-o", self.folder / "m.dat")
         self.refused(USAGE, CUBE, "--resume", "-o", self.folder / "m.npy")
 
@@ -288,9 +287,11 @@ class Points(FormFactorsTest):
 class Checkpoints(FormFactorsTest):
     WORK = (CORNELL, "--patches", 3000, "--resolution", 128, "--quiet")
 
-    def stop(self, number, checkpoint, target):
-        """Starts the work and ends it by a signal once rows are in the file."""
-        arguments = [PROGRAM, "formfactors", *map(str, self.WORK), "-o", str(target), "--checkpoint", str(checkpoint),
+    LINES = (CORNELL, "--patches", 3000, "--method", "global-lines", "--lines", 15_000_000, "--quiet")
+
+    def stop(self, number, checkpoint, target, work=WORK):
+        """Starts the work and ends it by a signal once rows, or counts of lines, are in the file."""
+        arguments = [PROGRAM, "formfactors", *map(str, work), "-o", str(target), "--checkpoint", str(checkpoint),
                      "--checkpoint-interval", "0.05"]
         with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
             while process.poll() is None and not (checkpoint.exists() and checkpoint.stat().st_size > 200_000):
@@ -311,6 +312,33 @@ class Checkpoints(FormFactorsTest):
                 self.assertEqual(target.read_bytes(), whole.read_bytes())
                 self.assertFalse(checkpoint.exists())
                 target.unlink()
+
+    def test_so_do_global_lines(self):
+        whole, target, checkpoint = (self.folder / name for name in ("whole.npy", "m.npy", "counts"))
+        for line_set in ("chords", "bundles"):
+            work = (*self.LINES, "--line-set", line_set)
+            self.factors(*work, "-o", whole)
+            for number in (signal.SIGKILL, signal.SIGINT):
+                with self.subTest(f"{line_set}, {number}"):
+                    self.stop(number, checkpoint, target, work)
+                    report = self.factors(*work, "-o", target, "--checkpoint", checkpoint, "--resume", "--threads", 1)
+                    self.assertGreater(report["resumed_lines"], 0)
+                    self.assertEqual(target.read_bytes(), whole.read_bytes())
+                    self.assertFalse(checkpoint.exists())
+                    target.unlink()
+
+    def test_damaged_or_other_counts_of_lines_are_refused(self):
+        target, checkpoint = self.folder / "m.npy", self.folder / "counts"
+        self.stop(signal.SIGKILL, checkpoint, target, self.LINES)
+        resume = ("-o", target, "--checkpoint", checkpoint, "--resume")
+        self.refused(USAGE, *self.LINES, *resume, "--seed", 2)
+        self.refused(USAGE, *self.LINES, *resume, "--line-set", "bundles")
+        self.refused(USAGE, *self.LINES, *resume, "--patches", 200)
+        content = checkpoint.read_bytes()
+        for damaged in (content[:-7], content[:len(content) // 2] + b"x" + content[len(content) // 2 + 1:]):
+            checkpoint.write_bytes(damaged)
+            self.assertIn("remove it", self.refused(INPUT, *self.LINES, *resume))
+            self.assertEqual(checkpoint.read_bytes(), damaged)
 
     def test_a_torn_or_changed_end_is_computed_again(self):
         whole, target, checkpoint = (self.folder / name for name in ("whole.npy", "m.npy", "rows"))

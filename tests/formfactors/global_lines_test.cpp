@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/state_checkpoint.h"
 #include "formfactors/global_lines.h"
 #include "formfactors/repair.h"
 
@@ -9,7 +10,6 @@
 
 #include <array>
 #include <numbers>
-#include <sstream>
 
 namespace lambert {
 namespace {
@@ -343,43 +343,26 @@ TEST(GlobalLines, GoOnWithTheSameBitsAfterAnInterruption) {
         EXPECT_GT(counts.lines(), 0U); // whole batches
         EXPECT_LT(counts.lines(), 2'500'000U);
 
-        std::stringstream file;
-        counts.save(file);
-        GlobalLineCounts loaded = GlobalLineCounts::load(file);
+        std::string bytes;
+        StateWriter writer(bytes);
+        counts.keep(writer);
+        GlobalLineCounts loaded(0);
+        StateReader reader(bytes, "counts");
+        loaded.keep(reader);
         EXPECT_EQ(loaded, counts);
         Progress progress;
         lines.trace(loaded, progress);
         EXPECT_EQ(loaded, whole);
-        std::ostringstream one, two;
-        whole.save(one);
-        loaded.save(two);
-        EXPECT_EQ(one.str(), two.str());
     }
 }
 
-TEST(GlobalLineCounts, RefuseWhatIsNotTheirs) {
+TEST(GlobalLineCounts, OfOtherLinesAreRefused) {
     const LinesCase c(closedBox(kCube6), 24);
-    const GlobalLineCounts counts = c.counts({.lines = 5000});
-    std::ostringstream out;
-    counts.save(out);
-    const std::string good = out.str();
-    for (std::size_t size = 0; size < good.size(); ++size) {
-        std::istringstream in(good.substr(0, size));
-        EXPECT_THROW(GlobalLineCounts::load(in), InputError) << size;
-    }
-    for (std::size_t k = 0; k < good.size(); ++k) { // either refused or some other counts, but never a crash
-        std::string bad = good;
-        bad[k] = static_cast<char>(0xFF);
-        std::istringstream in(bad);
-        try {
-            matrixOf(GlobalLineCounts::load(in));
-        } catch (const InputError&) {
-        }
-    }
-    const GlobalLines other(c.mesh, c.caster, {.lines = 4000});
-    GlobalLineCounts tooMany = counts;
+    GlobalLineCounts tooMany = c.counts({.lines = 5000});
     Progress progress;
-    EXPECT_THROW(other.trace(tooMany, progress), UsageError);
+    EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.lines = 4000}).trace(tooMany, progress), UsageError);
+    GlobalLineCounts ofFewerPatches(23);
+    EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.lines = 4000}).trace(ofFewerPatches, progress), UsageError);
 }
 
 TEST(GlobalLines, RefuseOptionsOutOfRange) {

@@ -1,4 +1,4 @@
-#include "solver/solver_checkpoint.h"
+#include "core/state_checkpoint.h"
 
 #include "core/checksum.h"
 #include "core/whole_file.h"
@@ -12,8 +12,6 @@ namespace lambert {
 
 namespace {
 
-constexpr std::string_view kMagic = "Lambert solver checkpoint 1: ";
-
 std::uint64_t checksumOf(std::string_view bytes) {
     Checksum sum;
     sum.add(bytes);
@@ -22,7 +20,7 @@ std::uint64_t checksumOf(std::string_view bytes) {
 
 } // namespace
 
-void SolverCheckpoint::check(const CheckpointOptions& options) {
+void StateCheckpoint::check(const CheckpointOptions& options) {
     std::error_code ignored;
     if (std::filesystem::exists(options.path, ignored) && !options.resume)
         throw UsageError(fmt::format("--checkpoint: {} is there already; go on with it by --resume, or remove it",
@@ -30,21 +28,26 @@ void SolverCheckpoint::check(const CheckpointOptions& options) {
     requireWritable(options.path);
 }
 
-SolverCheckpoint::SolverCheckpoint(const CheckpointOptions& options, std::string identity)
-    : path_(options.path), identity_(std::move(identity)), interval_(options.seconds), next_(options.seconds) {
+StateCheckpoint::StateCheckpoint(const CheckpointOptions& options, std::string kind, std::string identity)
+    : path_(options.path),
+      kind_(std::move(kind)),
+      identity_(std::move(identity)),
+      interval_(options.seconds),
+      next_(options.seconds) {
     check(options);
     std::ifstream file(path_, std::ios::binary);
     if (!file) return;
     std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     if (file.bad()) throw SystemError(fmt::format("{}: cannot read the checkpoint", path_.string()));
-    if (!bytes.starts_with(kMagic))
-        throw UsageError(fmt::format("--resume: {} is no checkpoint of a solver of this version", path_.string()));
+    const std::string magic = begin().substr(0, begin().size() - identity_.size() - 1);
+    if (!bytes.starts_with(magic))
+        throw UsageError(fmt::format("--resume: {} is no checkpoint of a {} of this version", path_.string(), kind_));
     const std::string expected = begin();
     if (!bytes.starts_with(expected))
         throw UsageError(
             fmt::format("--resume: {} is of another scene, other options or another version: found \"{}\", "
                         "this run is \"{}\"",
-                        path_.string(), bytes.substr(kMagic.size(), bytes.find('\n') - kMagic.size()), identity_));
+                        path_.string(), bytes.substr(magic.size(), bytes.find('\n') - magic.size()), identity_));
     std::uint64_t stored = 0;
     if (bytes.size() < expected.size() + sizeof stored)
         throw InputError(fmt::format("{}: the checkpoint ends too early; remove it", path_.string()));
@@ -55,15 +58,15 @@ SolverCheckpoint::SolverCheckpoint(const CheckpointOptions& options, std::string
     restored_ = bytes.substr(expected.size());
 }
 
-std::string SolverCheckpoint::begin() const { return fmt::format("{}{}\n", kMagic, identity_); }
+std::string StateCheckpoint::begin() const { return fmt::format("Lambert {} checkpoint 1: {}\n", kind_, identity_); }
 
-void SolverCheckpoint::write(std::string bytes) const {
+void StateCheckpoint::write(std::string bytes) const {
     const std::uint64_t sum = checksumOf(bytes);
     StateWriter{bytes}(sum);
     writeWholeFile(path_, bytes);
 }
 
-void SolverCheckpoint::remove() {
+void StateCheckpoint::remove() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
 }
