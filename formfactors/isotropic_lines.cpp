@@ -17,7 +17,7 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kChordsPerBlock = 1U << 12;
+constexpr std::uint32_t kChordsPerBlock = 1U << 16;
 constexpr std::uint32_t kMostPerBundle = 1U << 20;
 constexpr std::size_t kSize = LinePacket::kSize;
 
@@ -145,6 +145,7 @@ void IsotropicLines::fill(std::uint64_t block, Block& result, Keep keep) const {
         kept += result.meets[i];
     }
     result.kept.resize(kept);
+    if (keep == Keep::AllAsDrawn) return pack(result, result.kept);
     const auto dimensions = static_cast<std::uint32_t>(result.points.size() / count);
     const int bits = (std::bit_width(count) - 1) / static_cast<int>(dimensions);
     pack(result, result.sorter.order(result.points, count, dimensions, bits, result.kept));

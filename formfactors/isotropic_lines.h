@@ -52,7 +52,8 @@ public:
     /// Which lines of a block are wanted.
     enum class Keep {
         MeetingBounds, ///< only those that come near the scene's box, two of three; the others cross nothing
-        All
+        All,
+        AllAsDrawn ///< not put into order, to compare with
     };
 
     std::uint64_t blockCount() const;
@@ -60,7 +61,7 @@ public:
     std::uint32_t linesPerBlock() const;
     /// Lines of the first `blocks` blocks.
     std::uint64_t linesBefore(std::uint64_t blocks) const;
-    /// Lines of a block, the same for the same options; neighbours follow each other.
+    /// Lines of a block, the same for the same options; neighbours follow each other but for AllAsDrawn.
     void fill(std::uint64_t block, Block& result, Keep keep = Keep::MeetingBounds) const;
 
     /// Of the bounding sphere (metres), 1e-4 larger than needed: a patch of area A is crossed with probability A / (2πR²).
