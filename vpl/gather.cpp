@@ -2,12 +2,14 @@
 
 #include "core/error.h"
 #include "solver/direct_light.h"
+#include "vpl/glossy_sum.h"
 #include "vpl/recovery.h"
 #include "vpl/shadowed_sum.h"
 #include "vpl/sky_light.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -44,6 +46,10 @@ double largestGeometricTerm(const Scene& scene, double bound) {
 Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
                           std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress) {
     checkGather(options);
+    const bool recovers = options.recoveryRays > 0 && std::isfinite(options.bound);
+    const auto glossy = [](const VirtualPointLight& light) { return static_cast<bool>(light.lobe); };
+    if (recovers && (anyGlossy(receivers) || std::any_of(lights.begin(), lights.end(), glossy)))
+        throw UsageError("what the bound takes away from gloss cannot be recovered");
     const double largestTerm = largestGeometricTerm(rays.scene(), options.bound);
     Gathered result;
     progress.begin("gather light", receivers.size() * lights.size());
@@ -54,13 +60,17 @@ Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLig
     result.irradiance = std::move(sum.irradiance);
     result.cut = meanOf(sum.cut);
     result.cutAt = std::move(sum.cut);
+    result.glossyRadiance = std::move(sum.glossyRadiance);
     result.shadowRays = sum.rays;
     if (options.direct) {
         const std::vector<glm::dvec3> sky = skyLight(rays, receivers, options.skyRays, options.seed, progress);
         for (std::size_t i = 0; i < sky.size(); ++i) result.irradiance[i] += sky[i];
         result.shadowRays += sky.size() * options.skyRays;
+        const std::vector<glm::dvec3> shine = glossySkyLight(rays, receivers, options.skyRays, options.seed, progress);
+        for (std::size_t i = 0; i < shine.size(); ++i) result.glossyRadiance[i] += shine[i];
+        result.shadowRays += shine.size() * options.skyRays;
     }
-    if (options.recoveryRays == 0 || !std::isfinite(largestTerm)) return result;
+    if (!recovers) return result;
 
     Recovered recovered = recoverLight(rays, lights, receivers, largestTerm, options, progress);
     for (std::size_t i = 0; i < receivers.size(); ++i) result.irradiance[i] += recovered.irradiance[i];

@@ -51,7 +51,7 @@ RgbSum fluxOf(const std::vector<glm::dvec3>& atReceivers, const SolverProblem& p
 }
 
 EnergyBalance energyOf(const ParticleFlux& flux) {
-    return {flux.emitted, flux.received, flux.absorbed, flux.backFaces, flux.escaped};
+    return {flux.emitted, flux.received, flux.absorbed + flux.belowHorizon, flux.backFaces, flux.escaped};
 }
 
 } // namespace

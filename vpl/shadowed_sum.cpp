@@ -3,6 +3,8 @@
 #include "core/parallel.h"
 #include "core/vector_clones.h"
 #include "scene/punctual_light.h"
+#include "vpl/glossy_sum.h"
+#include "vpl/receiver_block.h"
 #include "vpl/receiver_order.h"
 
 #include <glm/geometric.hpp>
@@ -18,47 +20,10 @@ namespace lambert {
 
 namespace {
 
-constexpr std::size_t kMostInBlock = 512; ///< receivers; with their sums they fit the first-level cache
-constexpr int kLanes = ShadowPacket::kSize;
 constexpr std::size_t kLightsPerReport = 1024;
-/// Cosines below this are taken for 0: between points of one plane they are rounding.
-constexpr float kGrazing = 1e-5F;
-
-/// Neighbouring receivers, laid out for vector code and filled up to whole packets with ones that nothing reaches.
-struct alignas(64) Block {
-    float x[kMostInBlock], y[kMostInBlock], z[kMostInBlock];
-    float normalX[kMostInBlock], normalY[kMostInBlock], normalZ[kMostInBlock];
-    float endX[kMostInBlock], endY[kMostInBlock], endZ[kMostInBlock]; ///< of the shadow rays
-    double red[kMostInBlock], green[kMostInBlock], blue[kMostInBlock];
-    double cutRed[kMostInBlock], cutGreen[kMostInBlock], cutBlue[kMostInBlock];
-    float term[kMostInBlock]; ///< G of the light at hand; 0 where no light arrives
-    std::uint16_t lit[kMostInBlock + 1];
-    int size = 0;
-
-    void load(std::span<const Receiver> receivers, std::span<const std::uint32_t> indices) {
-        size = static_cast<int>((indices.size() + kLanes - 1) / kLanes) * kLanes;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
-            const bool filled = i < indices.size();
-            const Receiver& receiver = receivers[indices[filled ? i : 0]];
-            const glm::vec3 normal = filled ? receiver.normal : glm::vec3(0.0F);
-            const glm::vec3 end = receiver.position + receiver.lift * receiver.normal;
-            x[i] = receiver.position.x;
-            y[i] = receiver.position.y;
-            z[i] = receiver.position.z;
-            normalX[i] = normal.x;
-            normalY[i] = normal.y;
-            normalZ[i] = normal.z;
-            endX[i] = end.x;
-            endY[i] = end.y;
-            endZ[i] = end.z;
-            red[i] = green[i] = blue[i] = cutRed[i] = cutGreen[i] = cutBlue[i] = 0.0;
-        }
-    }
-};
-
 /// G between a light and all receivers of a block.
 LAMBERT_VECTOR_CLONES
-void geometricTerms(const VirtualPointLight& light, Block& block) {
+void geometricTerms(const VirtualPointLight& light, ReceiverBlock& block) {
     const glm::vec3 p = light.position;
     const glm::vec3 n = light.normal;
     const int size = block.size;
@@ -78,7 +43,7 @@ void geometricTerms(const VirtualPointLight& light, Block& block) {
 
 /// The places in a block at which light may arrive; returns their number.
 LAMBERT_VECTOR_CLONES
-int findLit(Block& block) {
+int findLit(ReceiverBlock& block) {
     int count = 0;
     for (int i = 0; i < block.size; ++i) {
         block.lit[count] = static_cast<std::uint16_t>(i);
@@ -89,7 +54,7 @@ int findLit(Block& block) {
 
 /// Adds what arrives from a light whose terms are now 0 in the shadow. `share` is Φ/π.
 LAMBERT_VECTOR_CLONES
-void addLight(const glm::vec3& share, float largest, Block& block) {
+void addLight(const glm::vec3& share, float largest, ReceiverBlock& block) {
     const double r = static_cast<double>(share.x);
     const double g = static_cast<double>(share.y);
     const double b = static_cast<double>(share.z);
@@ -105,7 +70,7 @@ void addLight(const glm::vec3& share, float largest, Block& block) {
 }
 
 /// Adds what the bound takes away. Apart, because it is rare.
-void addCut(const glm::vec3& share, float largest, Block& block) {
+void addCut(const glm::vec3& share, float largest, ReceiverBlock& block) {
     for (int i = 0; i < block.size; ++i) {
         if (!(block.term[i] > largest)) continue;
         const double cut = static_cast<double>(block.term[i]) - static_cast<double>(largest);
@@ -116,7 +81,7 @@ void addCut(const glm::vec3& share, float largest, Block& block) {
 }
 
 LAMBERT_VECTOR_CLONES
-float largestTermOf(const Block& block) {
+float largestTermOf(const ReceiverBlock& block) {
     float largest = 0.0F;
     for (int i = 0; i < block.size; ++i) largest = block.term[i] > largest ? block.term[i] : largest;
     return largest;
@@ -126,7 +91,7 @@ float largestTermOf(const Block& block) {
 class BundleFrom {
 public:
     /// From a point; the same origin for all.
-    BundleFrom(const Block& block, const glm::vec3& origin) : block_(block), origin_(origin) {
+    BundleFrom(const ReceiverBlock& block, const glm::vec3& origin) : block_(block), origin_(origin) {
         std::fill_n(packet.originX, kLanes, origin.x);
         std::fill_n(packet.originY, kLanes, origin.y);
         std::fill_n(packet.originZ, kLanes, origin.z);
@@ -146,14 +111,14 @@ public:
     ShadowPacket packet;
 
 private:
-    const Block& block_;
+    const ReceiverBlock& block_;
     glm::vec3 origin_;
 };
 
 /// From receivers toward a light without area.
 class BundleTo {
 public:
-    BundleTo(const Block& block, const PunctualLight& light, float length, float endGap)
+    BundleTo(const ReceiverBlock& block, const PunctualLight& light, float length, float endGap)
         : block_(block), light_(light), length_(length), endGap_(endGap) {}
     void fill(const std::uint16_t* places, int count) {
         const bool directional = light_.kind == PunctualLight::Kind::Directional;
@@ -175,14 +140,14 @@ public:
     ShadowPacket packet;
 
 private:
-    const Block& block_;
+    const ReceiverBlock& block_;
     const PunctualLight& light_;
     float length_, endGap_; ///< a light in a ceiling's plane is not behind it
 };
 
 /// Traces what findLit found and takes the light away from what lies in the shadow. Returns the number of rays.
 template <typename Bundle>
-int castShadows(const RayCaster& rays, Bundle& bundle, Block& block) {
+int castShadows(const RayCaster& rays, Bundle& bundle, ReceiverBlock& block) {
     const int count = findLit(block);
     for (int first = 0; first < count; first += kLanes) {
         const int lanes = std::min(kLanes, count - first);
@@ -194,18 +159,19 @@ int castShadows(const RayCaster& rays, Bundle& bundle, Block& block) {
     return count;
 }
 
-int addVirtualLight(const RayCaster& rays, const VirtualPointLight& light, float largest, Block& block) {
+int addVirtualLight(const RayCaster& rays, const VirtualPointLight& light, float largest, ReceiverBlock& block) {
     geometricTerms(light, block);
     BundleFrom bundle(block, light.position + light.lift * light.normal);
     const int count = light.castsShadows ? castShadows(rays, bundle, block) : 0;
     const glm::vec3 share = light.flux / std::numbers::pi_v<float>;
     addLight(share, largest, block);
     if (largestTermOf(block) > largest) addCut(share, largest, block);
+    if (light.lobe || block.gloss) addGlossy(light, largest, block);
     return count;
 }
 
 /// E_0 of a light without area: the term takes cosθ/d² times a spot's falloff, in units of the intensity.
-int addPunctualLight(const RayCaster& rays, const PunctualLight& light, Block& block) {
+int addPunctualLight(const RayCaster& rays, const PunctualLight& light, ReceiverBlock& block) {
     PunctualLight white = light;
     white.intensity = Rgb(1.0F);
     for (int i = 0; i < block.size; ++i) {
@@ -225,6 +191,7 @@ int addPunctualLight(const RayCaster& rays, const PunctualLight& light, Block& b
     BundleTo bundle(block, light, 2.0F * rays.bounds().diagonal(), rays.originOffset(0.0F));
     const int count = castShadows(rays, bundle, block);
     addLight(light.intensity, std::numeric_limits<float>::infinity(), block);
+    if (block.gloss) addGlossy(light, block);
     return count;
 }
 
@@ -241,12 +208,13 @@ ShadowedSum sumLights(const RayCaster& rays, const ShadowedLights& lights, std::
     ShadowedSum sum;
     sum.irradiance.resize(receivers.size());
     sum.cut.resize(receivers.size());
+    if (anyGlossy(receivers)) sum.glossyRadiance.resize(receivers.size());
     const std::vector<std::uint32_t> order = receiverOrder(receivers);
     const std::size_t perBlock = blockSize(receivers.size());
     const auto largest = static_cast<float>(largestTerm);
     std::atomic<std::uint64_t> rayCount{0};
     parallelFor((receivers.size() + perBlock - 1) / perBlock, 1, [&](std::size_t begin, std::size_t end, int) {
-        const auto block = std::make_unique<Block>();
+        const auto block = std::make_unique<ReceiverBlock>();
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t first = b * perBlock;
             const auto indices = std::span(order).subspan(first, std::min(perBlock, order.size() - first));
@@ -264,6 +232,7 @@ ShadowedSum sumLights(const RayCaster& rays, const ShadowedLights& lights, std::
             for (std::size_t i = 0; i < indices.size(); ++i) {
                 sum.irradiance[indices[i]] = {block->red[i], block->green[i], block->blue[i]};
                 sum.cut[indices[i]] = {block->cutRed[i], block->cutGreen[i], block->cutBlue[i]};
+                if (block->gloss) sum.glossyRadiance[indices[i]] = block->gloss->radiance[i];
             }
             rayCount += count;
         }

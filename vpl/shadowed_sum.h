@@ -13,8 +13,9 @@ namespace lambert {
 
 /// What many lights give to many receivers.
 struct ShadowedSum {
-    std::vector<glm::dvec3> irradiance; //!< #receivers
-    std::vector<glm::dvec3> cut;        //!< #receivers: what G_max took away
+    std::vector<glm::dvec3> irradiance;     //!< #receivers
+    std::vector<glm::dvec3> cut;            //!< #receivers: what G_max took away
+    std::vector<glm::dvec3> glossyRadiance; //!< #receivers: by their gloss, toward their eyes; empty if none has any
     std::uint64_t rays = 0;
 };
 

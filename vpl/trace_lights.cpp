@@ -30,7 +30,13 @@ constexpr std::array kWalks{std::pair<std::string_view, Walk>{"quasi", Walk::Qua
                             std::pair<std::string_view, Walk>{"fixed", Walk::Fixed}};
 constexpr std::uint32_t kMostParticles = 1U << 24;
 constexpr std::uint32_t kMostBounces = kPrimes / 2 - 2; ///< every hit takes two primes
+constexpr float kRounding = 1e-6F;                      ///< of sums of reflectances
 constexpr std::uint32_t kTextureSamples = 16;           ///< per polygon, for its mean reflectance
+
+double sumOf(const Rgb& flux) { return static_cast<double>(flux.x) + flux.y + flux.z; }
+
+/// Of both its parts.
+glm::dvec3 fluxOf(const VirtualPointLight& light) { return glm::dvec3(light.flux) + glm::dvec3(light.lobe.flux); }
 
 /// The numbers that decide on particles.
 class Numbers {
@@ -62,11 +68,12 @@ struct Particle {
     Rgb weight{0.0F}; ///< flux, if N of them start
     bool alive = false;
     bool direct = false; ///< comes straight from a light without area
+    bool sunk = false;   ///< into the surface that reflected it
 };
 
 /// What a particle's way to its next hit left behind.
 struct Arrival {
-    enum class End : std::uint8_t { None, Escaped, BackFace, Surface } end = End::None;
+    enum class End : std::uint8_t { None, Escaped, BackFace, BelowHorizon, Surface } end = End::None;
     bool direct = false; ///< as Particle's
     glm::dvec3 incoming{0.0};
     std::optional<VirtualPointLight> light;
@@ -79,7 +86,7 @@ public:
           options_(options),
           numbers_(options),
           sources_(rays),
-          meanReflectance_(meanReflectance(rays.scene())) {}
+          meanReflectance_(meanReflectance(rays.scene(), options.gloss)) {}
 
     VirtualPointLights run(Progress& progress) {
         if (sources_.empty()) return std::move(result_);
@@ -90,7 +97,7 @@ public:
             if (!level(k, followed(k), progress)) break;
         }
         for (std::size_t i = result_.lights.size(); i-- > 0 && result_.lights[i].bounce == lastBounce();)
-            if (options_.walk != Walk::Roulette) result_.flux.lost += glm::dvec3(result_.lights[i].flux);
+            if (options_.walk != Walk::Roulette) result_.flux.lost += fluxOf(result_.lights[i]);
         progress.end();
         return std::move(result_);
     }
@@ -145,6 +152,10 @@ private:
         Arrival arrival;
         arrival.incoming = scale * glm::dvec3(particle.weight);
         arrival.direct = std::exchange(particle.direct, false);
+        if (particle.sunk) {
+            arrival.end = Arrival::End::BelowHorizon;
+            return arrival;
+        }
         const auto hit = rays_.closest({particle.origin, particle.direction});
         if (!hit) {
             arrival.end = Arrival::End::Escaped;
@@ -157,17 +168,48 @@ private:
             return arrival;
         }
         arrival.end = Arrival::End::Surface;
-        if (!reflect(particle, reflectanceAt(rays_.scene(), polygon, side, hit->u, hit->v), numbers_.survival(j, k)))
-            return arrival;
+        const PhongLobe gloss = options_.gloss.empty() ? PhongLobe{} : options_.gloss[side.material];
+        const Rgb diffuse = reflectanceAt(rays_.scene(), polygon, side, hit->u, hit->v);
+        const Rgb reflectance =
+            glm::min(diffuse + gloss.reflectance, Rgb(1.0F)); // textures may be brighter than factors
+        if (!reflect(particle, reflectance, numbers_.survival(j, k))) return arrival;
         const SurfacePoint point = surfacePoint(rays_, hit->polygon, hit->front, hit->u, hit->v);
+        const auto atScale = [scale](const Rgb& flux) { return Rgb(scale * glm::dvec3(flux)); };
+        LightLobe lobe;
+        if (gloss) lobe = glossyPart(particle, gloss, reflectance, point.normal);
         arrival.light =
-            VirtualPointLight{point.position, point.normal, Rgb(scale * glm::dvec3(particle.weight)), k, point.lift};
-        const OrthonormalBasis frame(point.normal);
-        const glm::vec3 local(cosineHemisphere(numbers_.pair(j, k + 1)));
-        particle.origin = point.position + point.lift * frame.z;
-        particle.direction = local.x * frame.x + local.y * frame.y + local.z * frame.z;
-        particle.alive = true;
+            VirtualPointLight{point.position, point.normal, atScale(particle.weight - lobe.flux), k, point.lift};
+        arrival.light->lobe = {atScale(lobe.flux), lobe.axis, lobe.exponent};
+        send(particle, point, lobe, numbers_.pair(j, k + 1));
         return arrival;
+    }
+
+    /// Of a particle's weight after a reflection by both parts.
+    static LightLobe glossyPart(const Particle& particle, const PhongLobe& gloss, const Rgb& reflectance,
+                                const glm::vec3& normal) {
+        LightLobe lobe{Rgb(0.0F), mirrored(particle.direction, normal), gloss.exponent};
+        for (int c = 0; c < 3; ++c)
+            if (gloss.reflectance[c] > 0.0F)
+                lobe.flux[c] = particle.weight[c] * (gloss.reflectance[c] / reflectance[c]);
+        return lobe;
+    }
+
+    /// Sends a particle on from where it was reflected, by chance with the lobe or the rest of its weight.
+    static void send(Particle& particle, const SurfacePoint& from, const LightLobe& lobe, glm::dvec2 u) {
+        bool byLobe = false;
+        if (lobe) {
+            const double probability = sumOf(lobe.flux) / sumOf(particle.weight);
+            byLobe = u.x < probability;
+            const double chosen = byLobe ? probability : 1.0 - probability;
+            u.x = std::min((byLobe ? u.x : u.x - probability) / chosen, 1.0);
+            particle.weight = (byLobe ? lobe.flux : particle.weight - lobe.flux) / static_cast<float>(chosen);
+        }
+        const OrthonormalBasis frame(byLobe ? lobe.axis : from.normal);
+        const glm::vec3 local(byLobe ? phongDirection(u, static_cast<double>(lobe.exponent)) : cosineHemisphere(u));
+        particle.origin = from.position + from.lift * from.normal;
+        particle.direction = local.x * frame.x + local.y * frame.y + local.z * frame.z;
+        particle.sunk = byLobe && glm::dot(particle.direction, from.normal) <= 0.0F;
+        particle.alive = true;
     }
 
     /// Whether anything is reflected.
@@ -191,7 +233,7 @@ private:
             alive = alive || particles_[i].alive;
             if (arrival.light) result_.lights.push_back(*arrival.light);
             if (arrival.end == Arrival::End::None) continue;
-            ++result_.rays;
+            if (arrival.end != Arrival::End::BelowHorizon) ++result_.rays;
             account(arrival);
         }
         return alive;
@@ -201,7 +243,9 @@ private:
         ParticleFlux& flux = result_.flux;
         if (arrival.end == Arrival::End::Surface) {
             if (arrival.direct) flux.received += arrival.incoming;
-            flux.absorbed += arrival.incoming - (arrival.light ? glm::dvec3(arrival.light->flux) : glm::dvec3(0.0));
+            flux.absorbed += arrival.incoming - (arrival.light ? fluxOf(*arrival.light) : glm::dvec3(0.0));
+        } else if (arrival.end == Arrival::End::BelowHorizon) {
+            flux.belowHorizon += arrival.incoming;
         } else if (!arrival.direct) {
             (arrival.end == Arrival::End::Escaped ? flux.escaped : flux.backFaces) += arrival.incoming;
         }
@@ -230,7 +274,7 @@ Rgb meanReflectanceOf(const Scene& scene, const Polygon& polygon, const SurfaceS
 
 } // namespace
 
-double meanReflectance(const Scene& scene) {
+double meanReflectance(const Scene& scene, std::span<const PhongLobe> gloss) {
     double reflecting = 0.0;
     double area = 0.0;
     for (const Polygon& polygon : scene.polygons) {
@@ -238,7 +282,8 @@ double meanReflectance(const Scene& scene) {
         for (const bool front : {true, false}) {
             const SurfaceSide side = sideOf(scene, polygon, front);
             if (!side) continue;
-            const glm::dvec3 reflectance(meanReflectanceOf(scene, polygon, side));
+            glm::dvec3 reflectance(meanReflectanceOf(scene, polygon, side));
+            if (!gloss.empty()) reflectance += glm::dvec3(gloss[side.material].reflectance);
             reflecting += polygonSize * (reflectance.x + reflectance.y + reflectance.z) / 3.0;
             area += polygonSize;
         }
@@ -279,8 +324,28 @@ void checkTrace(const TraceOptions& options) {
                                      nameOf(options.sampler)));
 }
 
+void checkGloss(const Scene& scene, std::span<const PhongLobe> gloss) {
+    if (!gloss.empty() && gloss.size() != scene.materials.size())
+        throw UsageError(
+            fmt::format("gloss: found that of {} materials, expected {}", gloss.size(), scene.materials.size()));
+    for (std::size_t m = 0; m < gloss.size(); ++m) {
+        const Material& material = scene.materials[m];
+        const Rgb& glossy = gloss[m].reflectance;
+        for (int c = 0; c < 3; ++c)
+            if (!(glossy[c] >= 0.0F && (glossy[c] == 0.0F || material.reflectance[c] + glossy[c] <= 1.0F + kRounding)))
+                throw UsageError(
+                    fmt::format("gloss of material {}: found the reflectance {:g} beside the diffuse {:g}, "
+                                "allowed are 0 and more, together at most 1",
+                                material.name, glossy[c], material.reflectance[c]));
+        if (!(gloss[m].exponent >= 0.0F && gloss[m].exponent <= kLargestPhongExponent))
+            throw UsageError(fmt::format("gloss of material {}: found the exponent {:g}, allowed are 0 to {:g}",
+                                         material.name, gloss[m].exponent, kLargestPhongExponent));
+    }
+}
+
 VirtualPointLights traceLights(const RayCaster& rays, const TraceOptions& options, Progress& progress) {
     checkTrace(options);
+    checkGloss(rays.scene(), options.gloss);
     return Tracer(rays, options).run(progress);
 }
 
