@@ -17,8 +17,10 @@ namespace {
 
 constexpr double kPercentile = 0.99;
 constexpr double kDisplayValue = 0.9; ///< of the percentile, as automaticExposure has it
+constexpr double kLeastMedian =
+    0.08; ///< what half of a picture has at least: with one lit spot in a dark room all else is to be seen
 
-/// The EV at which the 99th percentile of what does not shine by itself becomes 0.9.
+/// The EV at which the 99th percentile of what does not shine by itself becomes 0.9, or its median 0.08 if that is brighter.
 float exposureOf(const Image& image, const PixelPoints& pixels) {
     std::vector<float> values;
     for (const std::uint32_t pixel : pixels.pixel) {
@@ -26,10 +28,13 @@ float exposureOf(const Image& image, const PixelPoints& pixels) {
         if (!pixels.emits[pixel]) values.push_back(std::max({c.x, c.y, c.z}));
     }
     if (values.empty()) return 0.0F;
-    const auto place =
-        values.begin() + static_cast<std::ptrdiff_t>(kPercentile * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return *place > 0.0F ? static_cast<float>(std::log2(kDisplayValue / static_cast<double>(*place))) : 0.0F;
+    const auto factor = [&](double share, double shown) {
+        const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+        std::nth_element(values.begin(), place, values.end());
+        return *place > 0.0F ? shown / static_cast<double>(*place) : 0.0;
+    };
+    const double largest = std::max(factor(kPercentile, kDisplayValue), factor(0.5, kLeastMedian));
+    return largest > 0.0 ? static_cast<float>(std::log2(largest)) : 0.0F;
 }
 
 std::vector<RgbSum> pixelsOf(const Image& image) {

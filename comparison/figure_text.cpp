@@ -21,7 +21,7 @@ bool isTiny(double percent) { return std::abs(percent) < 5e-5; }
 std::string percentText(double value) {
     const double percent = 100.0 * value;
     if (!std::isfinite(percent)) return "–";
-    if (isTiny(percent)) return std::abs(percent) < 5e-9 ? "0" : fmt::format("{:.0e} %", percent);
+    if (isTiny(percent)) return std::abs(percent) < 5e-9 ? "0" : "< 0.0001 %";
     return fmt::format("{}{:.{}f} %", percent < 0.0 ? "−" : "", std::abs(percent), decimals(percent));
 }
 

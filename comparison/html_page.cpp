@@ -24,6 +24,7 @@ figcaption,caption{color:var(--soft);font-size:13.5px;line-height:1.45;text-alig
 figcaption{margin-top:6px}
 caption{padding-bottom:6px}
 img,svg{display:block;max-width:100%;height:auto}
+.grid img{width:100%}
 svg.plot{width:100%;color:var(--text)}
 svg.plot text{font-family:inherit}
 .grid{display:grid;gap:26px 28px;margin:14px 0 8px;align-items:start}
@@ -41,7 +42,7 @@ th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-h
 .dense th{font-size:12px}
 .dense td:first-child,.dense th:first-child{padding-left:0}
 .facts td{text-align:left;overflow-wrap:anywhere}
-.facts td:first-child{color:var(--soft);width:11em}
+.facts td:first-child{color:var(--soft);width:11em;white-space:normal}
 tr.rule td{padding:0;border-bottom:2px solid var(--line)}
 td.strong{color:var(--strong);font-weight:650}
 .slider{--at:50%;max-width:768px;margin:14px 0 8px}

@@ -32,7 +32,8 @@ CaptionedPlot errorOverCost(const VplComparison& comparison, bool overSeconds) {
         plot.curves.push_back(std::move(error));
         if (method.method->isRandom()) plot.curves.push_back(std::move(noise));
     }
-    plot.levels.push_back({"the reference's own error", comparison.reference.rms.total() / mean});
+    const double own = comparison.reference.rms.total() / mean;
+    plot.levels.push_back({"the reference's own error, " + percentText(own), own});
     return result;
 }
 
