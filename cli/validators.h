@@ -12,7 +12,7 @@ inline CLI::Validator between(double lowest, double highest) {
     return {[=](const std::string& text) {
                 double value = 0.0;
                 if (!CLI::detail::lexical_cast(text, value) || !(value >= lowest && value <= highest))
-                    return fmt::format("found {}, allowed are numbers from {:g} to {:g}", text, lowest, highest);
+                    return fmt::format("found {}, allowed are numbers from {:.9g} to {:.9g}", text, lowest, highest);
                 return std::string();
             },
             "", ""};
