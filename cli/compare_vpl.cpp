@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace lambert {
 
@@ -43,10 +44,11 @@ struct CompareVplArguments {
     std::vector<double> ladder;
     int seeds = 16;
     std::string walk = "quasi";
-    std::uint32_t bounces = 4;
+    std::optional<std::uint32_t> bounces{};
     std::string clamp = "10";
     std::string visibility = "exact";
     bool compensate = false;
+    std::optional<int> perBounce{};
 };
 
 using Method = std::shared_ptr<const VplMethod>;
@@ -54,10 +56,14 @@ using Method = std::shared_ptr<const VplMethod>;
 Method instantRadiosity(const CompareVplArguments& a) {
     InstantRadiosityChoice choice;
     choice.walk = walkByName(a.walk).value();
-    choice.bounces = a.bounces;
+    if (a.bounces) choice.bounces = *a.bounces;
+    if (a.bounces && choice.walk != Walk::Fixed)
+        throw UsageError("--vpl-bounces: is for --walk fixed; other walks end by themselves");
     choice.bound = geometricBound(a.clamp);
     choice.indirectShadows = a.visibility == "exact";
     choice.compensate = a.compensate;
+    if (a.compensate && choice.bound == kUnbounded)
+        throw UsageError("--compensate: there is nothing to recover with --clamp none");
     return std::make_shared<InstantRadiosityMethod>(choice);
 }
 
@@ -81,13 +87,18 @@ std::vector<Method> methods(const CompareVplArguments& a) {
         const auto found =
             std::find_if(kMethods.begin(), kMethods.end(), [&](const NamedMethod& m) { return m.name == name; });
         if (found == kMethods.end())
-            throw UsageError(
-                fmt::format("--methods: no method \"{}\": there are {}", name, fmt::join(vplMethodNames(), ", ")));
+            throw UsageError(fmt::format("--methods: no method \"{}\": there are {}; or all alone", name,
+                                         fmt::join(vplMethodNames(), ", ")));
         if (std::count(names.begin(), names.end(), name) > 1)
             throw UsageError(fmt::format("--methods: {} is named twice", name));
         result.push_back(found->make(a));
     }
     return result;
+}
+
+void checkWhole(double value, const char* option) {
+    if (value != std::floor(value))
+        throw UsageError(fmt::format("{}: found {:g}, allowed are whole numbers", option, value));
 }
 
 /// By steps of four around the number of the anatomy, unless given.
@@ -107,10 +118,12 @@ nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& re
     json["options"] = sceneOptionsJson(a.scene, read.overrides);
     json["options"]["vpls"] = a.vpls;
     json["options"]["walk"] = a.walk;
-    if (a.walk == "fixed") json["options"]["vpl_bounces"] = a.bounces;
+    if (a.walk == "fixed") json["options"]["vpl_bounces"] = a.bounces.value_or(InstantRadiosityChoice{}.bounces);
     json["options"]["clamp"] = a.clamp;
     json["options"]["compensate"] = a.compensate;
     json["options"]["visibility"] = a.visibility;
+    json["options"]["per_bounce"] =
+        a.perBounce ? nlohmann::ordered_json(*a.perBounce) : nlohmann::ordered_json(nullptr);
     json["options"]["threads"] = threadCount();
     json["seed"] = a.run.seed;
     json["seeds"] = a.seeds;
@@ -120,9 +133,21 @@ nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& re
     return json;
 }
 
+void checkPerBounce(const CompareVplArguments& a, const std::vector<Method>& compared) {
+    if (!a.perBounce) return;
+    for (const Method& method : compared)
+        if (!method->knowsBounces())
+            throw UsageError(
+                fmt::format("--per-bounce: what {} compensates is known only in sum, not by bounce", method->name()));
+}
+
 ExitCode compareVpl(const CompareVplArguments& a) {
     VplComparisonOptions options;
     options.methods = methods(a);
+    checkPerBounce(a, options.methods);
+    options.perBounce = a.perBounce.has_value();
+    checkWhole(a.vpls, "--vpls");
+    for (const double vpls : a.ladder) checkWhole(vpls, "--ladder");
     options.effort = a.vpls;
     options.ladder = ladder(a);
     options.seeds = a.seeds;
@@ -146,7 +171,9 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     options.onStage = [&](const std::string& what) { progress.setTitle(what); };
     options.gathering.seed = a.run.seed;
     const Stopwatch referenceWatch;
-    const RadiosityReference reference(scene, {.mesh = mesh, .seed = a.run.seed, .onStage = options.onStage}, progress);
+    const RadiosityReference reference(
+        scene, {.mesh = mesh, .bounces = a.perBounce.value_or(0), .seed = a.run.seed, .onStage = options.onStage},
+        progress);
     const double referenceSeconds = referenceWatch.seconds();
     VplComparison comparison = compareVpl(scene, reference, options, progress);
     comparison.referenceSeconds = referenceSeconds;
@@ -206,6 +233,12 @@ void addCompareVpl(CLI::App& compare, CommandRun& run) {
     command.add_option("--seeds", a.seeds, "Runs of each method and number, 3 to 1000 [16]")
         ->type_name("K")
         ->check(between(3.0, 1000.0))
+        ->group("Comparison");
+    command
+        .add_option("--per-bounce", a.perBounce,
+                    "Also the errors of light that was reflected 0, 1, ... K times, each by itself; 0 to 16")
+        ->type_name("K")
+        ->check(between(0.0, 16.0))
         ->group("Comparison");
     command.add_option("--walk", a.walk, "How particles end: quasi, roulette or fixed [quasi]")
         ->check(CLI::IsMember({"quasi", "roulette", "fixed"}))

@@ -26,6 +26,11 @@ public:
         tell("reference at the receivers");
         result_.reference =
             reference.at(result_.points.receivers, result_.points.weight, options_.gathering, progress_);
+        if (options_.perBounce) {
+            tell("reference at the receivers, by bounce");
+            result_.referenceBounces =
+                reference.byBounce(result_.points.receivers, result_.points.weight, options_.gathering, progress_);
+        }
         result_.referencePatches = reference.patches();
         result_.referenceLines = reference.lines();
         for (const auto& method : options_.methods) result_.methods.push_back(compared(method));
@@ -51,6 +56,7 @@ private:
             result.ladder.push_back(rung(*method, effort));
         }
         anatomise(result);
+        if (!result_.referenceBounces.empty() && method->knowsBounces()) result.bounces = bounces(*method);
         return result;
     }
 
@@ -73,6 +79,22 @@ private:
         }
         rung.sampling = deviation(fields);
         return rung;
+    }
+
+    std::vector<VplBounce> bounces(const VplMethod& method) {
+        const std::vector<ReferenceLight>& known = result_.referenceBounces;
+        std::vector<VplBounce> result(known.size());
+        for (int k = 0; k < seedsOf(method); ++k) {
+            tell(fmt::format("{}, by bounce, seed {} of {}", method.name(), k + 1, seedsOf(method)));
+            const std::vector<Field> fields =
+                method.lightByBounce(*scene_.rays, result_.points.receivers, options_.effort, seed(k),
+                                     static_cast<std::uint32_t>(known.size() - 1), progress_);
+            for (std::size_t b = 0; b < known.size(); ++b)
+                result[b].runs.push_back(lightErrors(result_.points.weight, known[b].irradiance, fields[b]));
+        }
+        for (std::size_t b = 0; b < known.size(); ++b)
+            result[b].significant = result[b].of(&FieldErrors::rms).mean > known[b].rms.total();
+        return result;
     }
 
     /// RMS over points and channels of what one run is off the mean of all, for infinitely many runs.
@@ -138,6 +160,12 @@ LightErrors lightErrors(std::span<const double> weight, std::span<const RgbSum> 
 MeanDeviation VplRung::of(const std::function<double(const VplRun&)>& value) const {
     std::vector<double> values;
     for (const VplRun& run : runs) values.push_back(value(run));
+    return meanDeviation(values);
+}
+
+MeanDeviation VplBounce::of(double FieldErrors::*value) const {
+    std::vector<double> values;
+    for (const LightErrors& run : runs) values.push_back(run.overall.*value);
     return meanDeviation(values);
 }
 

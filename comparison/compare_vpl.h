@@ -39,6 +39,14 @@ struct VplRung {
     MeanDeviation of(const std::function<double(const VplRun&)>& value) const;
 };
 
+/// Light that was reflected so many times.
+struct VplBounce {
+    std::vector<LightErrors> runs; //!< #seeds
+    bool significant = true;       //!< whether their RMS error is above the reference's own error in this light
+
+    MeanDeviation of(double FieldErrors::*value) const; //!< overall
+};
+
 struct VplMethodResult {
     std::shared_ptr<const VplMethod> method;
     std::vector<VplRung> ladder; //!< ascending
@@ -46,6 +54,7 @@ struct VplMethodResult {
     ErrorAnatomy anatomy;
     bool significant = true;                   //!< whether the RMS error there is above the reference's own error
     std::vector<std::vector<float>> partSizes; //!< see partSizes()
+    std::vector<VplBounce> bounces;            //!< at the effort of the anatomy; empty unless asked for and known
 };
 
 struct VplComparisonOptions {
@@ -55,14 +64,16 @@ struct VplComparisonOptions {
     int seeds = 16;             //!< runs of each, >= 3
     std::uint64_t seed = 1;     //!< of the first run; the others follow
     ReferenceOptions reference;
+    bool perBounce = false;                          //!< compares each bounce, as many as the reference knows apart
     PointGatherOptions gathering;                    //!< of the reference at the receivers
     std::function<void(const std::string&)> onStage; //!< told what begins, if given
 };
 
 struct VplComparison {
-    ComparedPoints points;              //!< the patches' centres
-    std::vector<std::uint32_t> patches; //!< #points
-    ReferenceLight reference;           //!< at the points
+    ComparedPoints points;                        //!< the patches' centres
+    std::vector<std::uint32_t> patches;           //!< #points
+    ReferenceLight reference;                     //!< at the points
+    std::vector<ReferenceLight> referenceBounces; //!< as RadiosityReference::byBounce; empty unless asked for
     std::vector<std::size_t> referencePatches;
     std::uint32_t referenceLines = 0;
     double referenceSeconds = 0.0; //!< on the clock

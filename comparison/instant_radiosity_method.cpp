@@ -84,6 +84,20 @@ MethodLight InstantRadiosityMethod::light(const RayCaster& rays, std::span<const
             traced.rays + gathered.shadowRays + gathered.recoveryRays};
 }
 
+std::vector<Field> InstantRadiosityMethod::lightByBounce(const RayCaster& rays, std::span<const Receiver> receivers,
+                                                         double effort, std::uint64_t seed, std::uint32_t most,
+                                                         Progress& progress) const {
+    VirtualPointLights traced = trace(rays, effort, seed, progress);
+    if (!choice_.indirectShadows) traced.lights = withoutIndirectShadows(std::move(traced.lights));
+    GatherOptions options = gathering(false, seed);
+    std::vector<Field> fields;
+    for (std::uint32_t k = 0; k <= most; ++k) {
+        options.direct = k == 0;
+        fields.push_back(gatherIrradiance(rays, traced.ofBounces(k, k), receivers, options, progress).irradiance);
+    }
+    return fields;
+}
+
 std::vector<Approximation> InstantRadiosityMethod::approximations() const {
     const Approximation visibility =
         choice_.indirectShadows

@@ -25,6 +25,11 @@ public:
     std::vector<std::pair<std::string, std::string>> options() const override;
     MethodLight light(const RayCaster& rays, std::span<const Receiver> receivers, double effort, std::uint64_t seed,
                       Progress& progress) const override;
+    /// Not of compensated light: what recovery finds is known only in sum.
+    bool knowsBounces() const override { return !(choice_.compensate && clamps()); }
+    std::vector<std::vector<RgbSum>> lightByBounce(const RayCaster& rays, std::span<const Receiver> receivers,
+                                                   double effort, std::uint64_t seed, std::uint32_t most,
+                                                   Progress& progress) const override;
     std::vector<Approximation> approximations() const override;
     std::vector<std::vector<RgbSum>> exchanged(const RayCaster& rays, std::span<const Receiver> receivers,
                                                double effort, std::uint64_t seed, Progress& progress) const override;

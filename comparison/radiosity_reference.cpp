@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lambert {
@@ -41,10 +42,26 @@ double refinement(const PatchMesh& coarse, const PatchMesh& fine) {
     return std::sqrt(static_cast<double>(fine.size()) / static_cast<double>(coarse.size()));
 }
 
-/// The irradiance of the patches. Form factors carry only what is reflected: direct light, of which lines that meet small
+/// The irradiance of patches by light that was reflected 0, 1, ... bounces − 1 times.
+std::vector<std::vector<RgbSum>> solvedByBounce(const SolverProblem& problem, FormFactorRows& rows, int bounces,
+                                                Progress& progress) {
+    std::vector<std::vector<RgbSum>> result;
+    std::vector<RgbSum> radiosity = problem.emitted();
+    for (int k = 0; k < bounces; ++k) {
+        std::vector<RgbSum>& irradiance = result.emplace_back(problem.size());
+        gatherAll(rows, radiosity, irradiance, progress);
+        for (std::size_t i = 0; i < problem.size(); ++i) {
+            if (k == 0) irradiance[i] += problem.direct(i);
+            radiosity[i] = problem.reflectance(i) * irradiance[i];
+        }
+    }
+    return result;
+}
+
+/// The irradiance of the patches, as Level::irradiance. Form factors carry only what is reflected: direct light, of which lines that meet small
 /// emitters would give a noisy account, is found for itself.
-std::vector<RgbSum> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, std::uint64_t seed,
-                           Progress& progress) {
+std::vector<std::vector<RgbSum>> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces,
+                                        std::uint64_t seed, Progress& progress) {
     std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
     const EmitterLight emitters(rays, mesh, kEmitterPoints, seed);
     if (emitters.isKnown()) {
@@ -55,7 +72,7 @@ std::vector<RgbSum> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t 
     const auto isDark = [](const auto& light) { return light.x + light.y + light.z == 0; };
     if (std::all_of(direct.begin(), direct.end(), isDark) &&
         std::all_of(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), isDark))
-        return direct; // lamps that nothing sees
+        return std::vector(static_cast<std::size_t>(1 + bounces), direct); // lamps that nothing sees
     const SolverProblem problem(mesh, std::move(direct));
     TransportOptions options;
     options.method = TransportMethod::LocalLines;
@@ -63,7 +80,9 @@ std::vector<RgbSum> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t 
     options.seed = seed;
     const TransportMatrix matrix = computeMatrix(planTransport(options, mesh, rays, progress), mesh, rays, progress);
     StoredRows rows(matrix.matrix);
-    return solve(problem, rows, kSolve, progress).irradiance;
+    std::vector<std::vector<RgbSum>> result = solvedByBounce(problem, rows, bounces, progress);
+    result.insert(result.begin(), solve(problem, rows, kSolve, progress).irradiance);
+    return result;
 }
 
 /// Sums over the points and channels of fields at them.
@@ -126,7 +145,7 @@ RadiosityReference::RadiosityReference(const MeshedScene& scene, const Reference
     const auto solution = [&](const PatchMesh& mesh, std::uint32_t lines) {
         tell(fmt::format("reference, {} patches, {} lines", mesh.size(), lines));
         const auto key = philox({set++, 0, 0, 0x52454652}, options.seed);
-        return solved(mesh, rays, lines, std::uint64_t{key[0]} << 32 | key[1], progress);
+        return solved(mesh, rays, lines, options.bounces, std::uint64_t{key[0]} << 32 | key[1], progress);
     };
     for (Level& level : levels_) level.irradiance = solution(level.mesh, lines_);
     fewerLines_ = solution(levels_.back().mesh, static_cast<std::uint32_t>(lines_ / kLineRatio));
@@ -141,17 +160,55 @@ std::vector<std::size_t> RadiosityReference::patches() const {
 ReferenceLight RadiosityReference::at(std::span<const Receiver> receivers, std::span<const double> weight,
                                       const PointGatherOptions& options, Progress& progress) const {
     std::vector<PatchLight> lights;
-    for (const Level& level : levels_) lights.push_back({&level.mesh, level.irradiance});
-    lights.push_back({&levels_.back().mesh, fewerLines_});
-    PointGatherOptions half = options;
-    const auto first = gatherAtPoints(*scene_.rays, lights, receivers, half, progress);
-    half.seed = ~options.seed;
-    const auto second = gatherAtPoints(*scene_.rays, lights, receivers, half, progress);
+    for (const Level& level : levels_) lights.push_back({&level.mesh, level.irradiance[0]});
+    lights.push_back({&levels_.back().mesh, fewerLines_[0]});
+    PointGatherOptions other = options;
+    other.seed = ~options.seed;
+    return extrapolated({gatherAtPoints(*scene_.rays, lights, receivers, options, progress),
+                         gatherAtPoints(*scene_.rays, lights, receivers, other, progress)},
+                        weight);
+}
 
+std::vector<ReferenceLight> RadiosityReference::byBounce(std::span<const Receiver> receivers,
+                                                         std::span<const double> weight,
+                                                         const PointGatherOptions& options, Progress& progress) const {
+    // From dark patches comes what was not reflected; from those lit by light of k reflections, with the same rays, that and what is
+    // reflected once more.
+    std::vector<Field> dark;
+    for (const Level& level : levels_) dark.emplace_back(level.mesh.size(), RgbSum(0.0));
+    dark.push_back(dark.back());
+    std::vector<PatchLight> lights;
+    for (std::size_t bounce = 0; bounce < levels_.back().irradiance.size(); ++bounce) {
+        for (std::size_t k = 0; k <= levels_.size(); ++k) {
+            const bool fewer = k == levels_.size();
+            const Level& level = fewer ? levels_.back() : levels_[k];
+            lights.push_back({&level.mesh, bounce == 0 ? dark[k] : (fewer ? fewerLines_ : level.irradiance)[bounce]});
+        }
+    }
+    PointGatherOptions other = options;
+    other.seed = ~options.seed;
+    const std::array all{gatherAtPoints(*scene_.rays, lights, receivers, options, progress),
+                         gatherAtPoints(*scene_.rays, lights, receivers, other, progress)};
+    std::vector<ReferenceLight> result;
+    const std::size_t fields = levels_.size() + 1;
+    for (std::size_t first = 0; first < lights.size(); first += fields) {
+        Gathered gathered;
+        for (std::size_t k = 0; k < fields; ++k) {
+            const double unreflected = first == 0 ? 0.0 : -1.0;
+            gathered.first.push_back(combined(1.0, all[0][first + k], unreflected, all[0][k]));
+            gathered.second.push_back(combined(1.0, all[1][first + k], unreflected, all[1][k]));
+        }
+        result.push_back(extrapolated(gathered, weight));
+    }
+    return result;
+}
+
+ReferenceLight RadiosityReference::extrapolated(const Gathered& gathered, std::span<const double> weight) const {
+    const auto& [first, second] = gathered;
     const Norms norms(weight);
     const std::size_t finest = levels_.size() - 1;
     std::vector<std::vector<RgbSum>> mean;
-    for (std::size_t k = 0; k < lights.size(); ++k) mean.push_back(combined(0.5, first[k], 0.5, second[k]));
+    for (std::size_t k = 0; k < first.size(); ++k) mean.push_back(combined(0.5, first[k], 0.5, second[k]));
 
     ReferenceLight result;
     double ahead = 0.0; // by how much of the last difference the extrapolated value lies beyond the finest
@@ -166,15 +223,15 @@ ReferenceLight RadiosityReference::at(std::span<const Receiver> receivers, std::
         }
         ahead = 1.0 / (std::pow(ratio, result.order) - 1.0);
     }
-    const auto extrapolated = [&](const std::vector<std::vector<RgbSum>>& of) {
+    const auto limit = [&](const std::vector<std::vector<RgbSum>>& of) {
         return finest > 0 ? combined(1.0 + ahead, of[finest], -ahead, of[finest - 1]) : of[finest];
     };
-    result.irradiance = extrapolated(mean);
+    result.irradiance = limit(mean);
 
     // A quarter of the lines has twice the noise: the difference is √5 times that of the finer set. Extrapolation makes it larger,
     // and adds that of the coarser mesh, which fewer patches average.
     const double noise = std::sqrt(((1.0 + ahead) * (1.0 + ahead) + kLineRatio * ahead * ahead) / (1.0 + kLineRatio));
-    const auto oneHalf = extrapolated(first);
+    const auto oneHalf = limit(first);
     result.rms = {norms.rms(result.irradiance, mean[finest]), noise * norms.rms(mean.back(), mean[finest]),
                   norms.rms(oneHalf, result.irradiance)};
     result.mean = {norms.mean(result.irradiance, mean[finest]), noise * norms.mean(mean.back(), mean[finest]),

@@ -15,6 +15,7 @@ namespace lambert {
 struct ReferenceOptions {
     MeshOptions mesh;   //!< as that of the compared scene was made
     double lines = 2e8; //!< in all, from the finest mesh; of each patch 1024 to 16384
+    int bounces = 0;    //!< how many times reflected light is known apart, see RadiosityReference::byBounce
     std::uint64_t seed = 1;
     std::function<void(const std::string&)> onStage; //!< told what begins, if given
 };
@@ -50,17 +51,28 @@ public:
     ReferenceLight at(std::span<const Receiver> receivers, std::span<const double> weight,
                       const PointGatherOptions& options, Progress& progress) const;
 
+    /// The light that was reflected 0, 1, ... ReferenceOptions::bounces times on its way to the receivers: bounces + 1. Each is extrapolated
+    /// by itself.
+    std::vector<ReferenceLight> byBounce(std::span<const Receiver> receivers, std::span<const double> weight,
+                                         const PointGatherOptions& options, Progress& progress) const;
+
     std::vector<std::size_t> patches() const;      //!< of the meshes, the coarsest first
     std::uint32_t lines() const { return lines_; } //!< per patch of the finest mesh
 
 private:
+    using Field = std::vector<RgbSum>;
     struct Level {
         PatchMesh mesh;
-        std::vector<RgbSum> irradiance;
+        std::vector<Field> irradiance; ///< [0] of all light, [1 + k] of light that was reflected k times
     };
+    /// Gathered from [0] of all meshes (or [1 + k]) and from the finest with fewer lines, with two sets of rays.
+    struct Gathered {
+        std::vector<Field> first, second; ///< #levels + 1
+    };
+    ReferenceLight extrapolated(const Gathered& gathered, std::span<const double> weight) const;
     const MeshedScene& scene_;
-    std::vector<Level> levels_;      ///< the coarsest first
-    std::vector<RgbSum> fewerLines_; ///< on the finest mesh, with a quarter of the lines
+    std::vector<Level> levels_;     ///< the coarsest first
+    std::vector<Field> fewerLines_; ///< as Level::irradiance, on the finest mesh, with a quarter of the lines
     std::uint32_t lines_ = 0;
 };
 

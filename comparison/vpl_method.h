@@ -43,6 +43,17 @@ public:
     virtual MethodLight light(const RayCaster& rays, std::span<const Receiver> receivers, double effort,
                               std::uint64_t seed, Progress& progress) const = 0;
 
+    /// Whether lightByBounce() is known.
+    virtual bool knowsBounces() const { return false; }
+    /// The parts of light() that were reflected 0, 1, ... `most` times on their way to the receivers: most + 1 fields. Only if
+    /// knowsBounces().
+    virtual std::vector<std::vector<RgbSum>> lightByBounce(const RayCaster& /*rays*/,
+                                                           std::span<const Receiver> /*receivers*/, double /*effort*/,
+                                                           std::uint64_t /*seed*/, std::uint32_t /*most*/,
+                                                           Progress& /*progress*/) const {
+        return {};
+    }
+
     /// What it can exchange, beside the number of lights, in the order in which exchanged() does so.
     virtual std::vector<Approximation> approximations() const = 0;
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace lambert {
 
@@ -91,9 +92,15 @@ private:
         add("In the picture", percentText(in_.pictures.ownError) + " of the mean radiance");
         for (const VplMethodResult& method : of_.methods)
             for (const auto& [name, value] : method.method->options())
-                add(fmt::format("{}, {}", method.method->name(), name), value);
+                add(of_.methods.size() > 1 ? fmt::format("{}, {}", method.method->name(), name) : capitalised(name),
+                    value);
         for (const auto& [name, value] : in_.facts) add(name, value);
         return table;
+    }
+
+    static std::string capitalised(std::string text) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+        return text;
     }
 
     static MeanDeviation overall(const VplRung& rung, double FieldErrors::*value, double unit) {
@@ -177,6 +184,33 @@ private:
                         "Thin lines: one standard error over the seeds; of what is left also the most that the error "
                         "of the reference can add."}},
                       1);
+        page_.table(table);
+        if (!method.bounces.empty()) bounces(method);
+    }
+
+    void bounces(const VplMethodResult& method) {
+        HtmlTable table;
+        table.dense = true;
+        table.caption = fmt::format(
+            "By bounce: light that was reflected so many times on its way, mean and deviation over {} seeds, relative "
+            "to the mean of all light; the energy ratio by itself.",
+            method.bounces.front().runs.size());
+        table.head = {"reflected", "light",   "bias",         "mean abs",          "RMS",
+                      "99 %",      "largest", "energy ratio", "reference's error", ""};
+        for (std::size_t k = 0; k < method.bounces.size(); ++k) {
+            const VplBounce& bounce = method.bounces[k];
+            std::vector<HtmlCell> row{k == 1 ? std::string("once") : fmt::format("{} times", k),
+                                      percentText(bounce.of(&FieldErrors::mean).mean / mean_)};
+            for (const auto value : {&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms,
+                                     &FieldErrors::percentile99, &FieldErrors::maximum}) {
+                const MeanDeviation found = bounce.of(value);
+                row.emplace_back(percentText(MeanDeviation{found.mean / mean_, found.deviation / mean_}));
+            }
+            row.emplace_back(fmt::format("{:.4f}", bounce.of(&FieldErrors::energyRatio).mean));
+            row.emplace_back(percentText(of_.referenceBounces[k].rms.total() / mean_));
+            row.emplace_back(significance(bounce.significant));
+            table.rows.push_back(row);
+        }
         page_.table(table);
     }
 

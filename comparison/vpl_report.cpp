@@ -71,6 +71,18 @@ Json lawJson(const std::optional<PowerLaw>& law) {
     return law ? Json{{"slope", law->exponent}, {"standard_error", law->exponentError}} : Json(nullptr);
 }
 
+Json bouncesJson(const std::vector<VplBounce>& bounces, const std::vector<ReferenceLight>& reference, double mean) {
+    Json json = Json::array();
+    for (std::size_t k = 0; k < bounces.size(); ++k) {
+        Json bounce{{"bounce", k}, {"mean", bounces[k].of(&FieldErrors::mean).mean}};
+        for (const Column& column : kColumns) bounce[column.key] = bounces[k].of(column.value).mean;
+        bounce["own_error"] = reference[k].rms.total() / mean;
+        bounce["significant"] = bounces[k].significant;
+        json.push_back(bounce);
+    }
+    return json;
+}
+
 Json methodJson(const VplMethodResult& result, double mean) {
     const VplRung& main = result.ladder[result.main];
     Json json{{"name", result.method->name()}, {"vpls", main.effort}};
@@ -118,6 +130,27 @@ std::string partText(const ErrorPart& part, double mean) {
                                         : fmt::format("{} → {}", part.approximation.used, part.approximation.instead));
 }
 
+std::string bouncesText(const VplMethodResult& method, const std::vector<ReferenceLight>& reference, double mean) {
+    std::string text =
+        fmt::format("\nby bounce, relative to the mean of all light:\n  {:<12} {:>10} {:>18} {:>18} {:>18} {:>18}\n",
+                    "reflected", "light", "bias", "RMS", "energy", "reference's error");
+    for (std::size_t k = 0; k < method.bounces.size(); ++k) {
+        const VplBounce& bounce = method.bounces[k];
+        const auto relative = [&](double FieldErrors::*value) {
+            const MeanDeviation found = bounce.of(value);
+            return percentText(MeanDeviation{found.mean / mean, found.deviation / mean});
+        };
+        const MeanDeviation energy = bounce.of(&FieldErrors::energyRatio);
+        text +=
+            fmt::format("  {:<12} {:>10} {:>18} {:>18} {:>18} {:>18}{}\n",
+                        k == 1 ? std::string("once") : fmt::format("{} times", k),
+                        percentText(bounce.of(&FieldErrors::mean).mean / mean), relative(&FieldErrors::bias),
+                        relative(&FieldErrors::rms), fmt::format("{:.4f} ± {:.4f}", energy.mean, energy.deviation),
+                        percentText(reference[k].rms.total() / mean), bounce.significant ? "" : "  not significant");
+    }
+    return text;
+}
+
 } // namespace
 
 std::optional<PowerLaw> samplingLaw(const VplMethodResult& method, bool overSeconds) {
@@ -149,6 +182,8 @@ Json vplComparisonJson(const VplComparison& comparison, const VplPictures& pictu
     for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
         methods.push_back(methodJson(comparison.methods[m], mean));
         methods.back()["picture"] = pictureJson(pictures.methods[m]);
+        if (const auto& bounces = comparison.methods[m].bounces; !bounces.empty())
+            methods.back()["bounces"] = bouncesJson(bounces, comparison.referenceBounces, mean);
     }
     json["picture"] = {{"width", pictures.reference.width},
                        {"height", pictures.reference.height},
@@ -206,7 +241,9 @@ std::string vplComparisonText(const VplComparison& comparison) {
         text += fmt::format("  {:<12} {:>17} {:>12} {:>20} {:>14}   {}\n", "part", "share", "its RMS", "its bias",
                             "without it", "exchanged");
         for (const ErrorPart& part : method.anatomy.parts) text += partText(part, mean);
-        text += partText(method.anatomy.left, mean) + "\n";
+        text += partText(method.anatomy.left, mean);
+        if (!method.bounces.empty()) text += bouncesText(method, comparison.referenceBounces, mean);
+        text += '\n';
     }
     const ReferenceLight& reference = comparison.reference;
     text += fmt::format("reference: patch radiosity, {} patches, {} lines each, extrapolated with order {:.2f} ({})\n",

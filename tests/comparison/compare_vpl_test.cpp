@@ -18,6 +18,7 @@ struct Choice {
     double vpls = 512.0;
     int seeds = 8;
     double lines = 2e7; //!< of the reference
+    int bounces = 0;    //!< compared by themselves, with the one before
 };
 
 VplComparison compared(const std::string& name, const InstantRadiosityChoice& method, const Choice& choice) {
@@ -28,11 +29,13 @@ VplComparison compared(const std::string& name, const InstantRadiosityChoice& me
     ReferenceOptions referenceOptions;
     referenceOptions.mesh = mesh;
     referenceOptions.lines = choice.lines;
+    referenceOptions.bounces = choice.bounces;
     const RadiosityReference reference(scene, referenceOptions, progress);
     VplComparisonOptions options;
     options.methods = {std::make_shared<InstantRadiosityMethod>(method)};
     options.effort = choice.vpls;
     options.seeds = choice.seeds;
+    options.perBounce = choice.bounces > 0;
     options.gathering.cells = 64;
     return compareVpl(scene, reference, options, progress);
 }
@@ -136,6 +139,55 @@ TEST(Anatomy, SamplingAndClampingShareTheErrorOfTheCornellBox) {
     expectWhole(anatomy);
     EXPECT_GT(part(anatomy, "sampling").share + part(anatomy, "clamping").share, 0.9);
     EXPECT_GT(part(anatomy, "clamping").share, 0.2);
+}
+
+// Of light that was reflected k times each wall of the furnace gets 2^-k, exactly: of 1, a half is reflected.
+TEST(Bounces, OfTheFurnaceArePowersOfItsReflectance) {
+    const VplComparison comparison = compared("furnace_box.obj", {.bound = kUnbounded}, {.patches = 150, .bounces = 4});
+    const std::vector<VplBounce>& bounces = comparison.methods.front().bounces;
+    ASSERT_EQ(comparison.referenceBounces.size(), 5U);
+    ASSERT_EQ(bounces.size(), 5U);
+    for (std::size_t k = 0; k < 5; ++k) {
+        const double exact = std::exp2(-static_cast<double>(k));
+        for (const RgbSum& e : comparison.referenceBounces[k].irradiance)
+            EXPECT_NEAR(e.y, exact, 1e-4 * exact); // a ray in a million slips through an edge
+        // The flux of every bounce is exact, but not where it arrives: four standard errors over the seeds.
+        const MeanDeviation ratio = bounces[k].of(&FieldErrors::energyRatio);
+        EXPECT_NEAR(ratio.mean, 1.0, 4.0 * ratio.deviation / std::sqrt(8.0)) << k;
+        EXPECT_LT(ratio.deviation, 0.2) << k;
+    }
+}
+
+// All light is the sum of its bounces: of the method to rounding; of the reference, each part of which is extrapolated by itself, within
+// its own error, which bounds that of the sum where bounces err alike.
+TEST(Bounces, OfTheCornellBoxMakeAllLight) {
+    constexpr int kMost = 16;
+    const InstantRadiosityChoice choice{.walk = Walk::Fixed, .bounces = kMost};
+    const VplComparison comparison = compared("cornell_box.obj", choice, {.vpls = 128, .seeds = 3, .bounces = kMost});
+    std::vector<RgbSum> sum(comparison.points.receivers.size(), RgbSum(0.0));
+    double ownErrors = 0.0;
+    for (const ReferenceLight& light : comparison.referenceBounces) {
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += light.irradiance[i];
+        ownErrors += light.rms.total();
+    }
+    const LightErrors off = lightErrors(comparison.points.weight, comparison.reference.irradiance, sum);
+    std::printf("sum of bounces: off by %.2e of the mean, own error %.2e, of the bounces %.2e\n",
+                off.overall.relativeRms, comparison.reference.rms.total() / off.overall.mean,
+                ownErrors / off.overall.mean);
+    EXPECT_LT(off.overall.rms, ownErrors);
+    EXPECT_LT(ownErrors, 0.02 * off.overall.mean);
+
+    const VplMethodResult& method = comparison.methods.front();
+    double bias = 0.0;
+    for (std::size_t k = 0; k < method.bounces.size(); ++k) bias += method.bounces[k].runs[0].overall.bias;
+    const double all = method.ladder[method.main].runs[0].errors.overall.bias;
+    EXPECT_NEAR(bias + off.overall.bias, all, 1e-9 * comparison.meanIrradiance());
+}
+
+TEST(Bounces, OfCompensatedLightAreNotKnown) {
+    EXPECT_FALSE(InstantRadiosityMethod({.compensate = true}).knowsBounces());
+    EXPECT_TRUE(InstantRadiosityMethod({.bound = kUnbounded, .compensate = true}).knowsBounces());
+    EXPECT_TRUE(InstantRadiosityMethod({}).knowsBounces());
 }
 
 } // namespace
