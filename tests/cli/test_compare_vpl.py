@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """`lambert compare vpl`: the page, its figures, and what happens when something is wrong."""
 import csv
+import json
 import os
 import re
+import shutil
 import signal
 import subprocess
+import sys
 import unittest
 
 from html_page import Page
-from lambert_cli import DATA, INPUT, INTERRUPTED, PROGRAM, SYSTEM, USAGE, ProgramTest, png_size, read_json, run
+from lambert_cli import (DATA, INPUT, INTERRUPTED, PROGRAM, REPOSITORY, SYSTEM, USAGE, ProgramTest, png_size, read_json,
+                         run)
 
 QUICK = ("--patches", "60", "--seeds", "4", "--size", "48x48", "--vpls", "64", "--ladder", "16")
 PARTS = ["sampling", "visibility", "clamping", "bounces", "unexplained"]
@@ -116,6 +120,95 @@ class TheRuns(CompareVplTest):
         self.assertLess(abs(report["methods"][0]["energy_ratio"] - 1), 0.2)
 
 
+    def test_light_by_bounce(self):
+        report = self.folder / "report.json"
+        folder = self.compare(DATA / "cube6.obj", "--per-bounce", "2", "--clamp", "none", "--json", report)
+        method, = read_json(report)["methods"]
+        self.assertEqual([bounce["bounce"] for bounce in method["bounces"]], [0, 1, 2])
+        self.assertIn("By bounce", Page((folder / "index.html").read_text(encoding="utf-8")).text)
+        lights = [bounce["mean"] for bounce in method["bounces"]]
+        self.assertGreater(lights[0], lights[1])
+        self.assertGreater(lights[1], lights[2])
+        for bounce in method["bounces"]:  # 64 lights and 4 seeds: a first look
+            self.assertLess(abs(bounce["energy_ratio"] - 1), 0.3)
+            self.assertGreaterEqual(bounce["own_error"], 0)
+
+    def test_a_fixed_walk_lacks_the_bounces_after_its_last(self):
+        method, = read_json(self.compare(DATA / "cube6.obj", "--per-bounce", "2", "--walk", "fixed", "--vpl-bounces", "1")
+                            / "results.json")["methods"]
+        self.assertGreater(method["bounces"][1]["energy_ratio"], 0.5)
+        self.assertEqual(method["bounces"][2]["energy_ratio"], 0)
+
+
+class Variants(CompareVplTest):
+    """Scenes that nobody has seen, the options unchanged: parts must make the whole on them too."""
+
+    def anatomy(self, *variation):
+        scene = self.folder / "variant.obj"
+        subprocess.run([sys.executable, REPOSITORY / "scripts/vary_scene.py", DATA / "cornell_box.obj", scene,
+                        *variation], check=True)
+        folder = self.folder / "out"
+        self.run_well("compare", "vpl", scene, "-o", folder, "--quiet", "--patches", "300", "--seeds", "12",
+                      "--ladder", "1024", "--size", "16x16")
+        method, = read_json(folder / "results.json")["methods"]
+        return {part["part"]: part for part in method["anatomy"]}
+
+    def check(self, parts):
+        self.assertAlmostEqual(sum(part["share"] for part in parts.values()), 1, places=9)
+        left = parts["unexplained"]
+        # Four standard errors, which 12 seeds know to a fifth; and they are small enough to say something.
+        self.assertLess(abs(left["share"]), 4 * left["share_error"])
+        self.assertLess(left["share_error"], 0.15)
+        # 1024 lights and the default bound: noise and the bound share the error, the bound is all of the bias.
+        self.assertGreater(parts["clamping"]["share"], 0.3)
+        self.assertGreater(parts["sampling"]["share"], 0.15)
+        for part in ("visibility", "bounces"):
+            self.assertLess(abs(parts[part]["share"]), 0.03, part)
+
+    def test_rotated(self):
+        self.check(self.anatomy("--rotate=0.3,1,0.2,27"))
+
+    def test_blocks_moved(self):
+        self.check(self.anatomy("--move", "short=0.06,0,0.04", "--move", "tall=-0.03,0,-0.05"))
+
+    def test_wall_subdivided(self):
+        self.check(self.anatomy("--subdivide", "back=7"))
+
+    def test_albedos_permuted(self):
+        self.check(self.anatomy("--permute-albedos", "5"))
+
+
+CHROMIUM = shutil.which("chromium")
+MOVE_AND_TELL = """<script>
+const range = document.querySelector('input[type=range]');
+range.value = 20;
+range.dispatchEvent(new Event('input'));
+const views = document.querySelector('.views'), line = document.querySelector('.views i');
+const cut = [...document.querySelectorAll('td, th, p, dd, figcaption, h3')].filter(e => e.scrollWidth > e.clientWidth + 1);
+document.title = JSON.stringify({at: (line.offsetLeft + 1) / views.clientWidth, clip: getComputedStyle(
+  document.querySelector('.views img + img')).clipPath, width: document.documentElement.scrollWidth, cut: cut.length,
+  pictures: [...document.images].every(image => image.complete && image.naturalWidth > 0)});
+</script></body>"""
+
+
+@unittest.skipUnless(CHROMIUM, "no chromium")
+class InABrowser(CompareVplTest):
+    def test_the_slider_moves_and_nothing_is_cut_off_at_1280_pixels(self):
+        folder = self.compare(DATA / "cornell_box.gltf", "--per-bounce", "1")
+        page = (folder / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("</body>"), 1)
+        driven = self.write("driven.html", page.replace("</body>", MOVE_AND_TELL))
+        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1280,900",
+                               f"--user-data-dir={self.folder / 'browser'}", "--dump-dom", f"file://{driven}"],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=True)
+        told = json.loads(re.search("<title>(.*?)</title>", done.stdout).group(1))
+        self.assertAlmostEqual(told["at"], 0.2, places=2)
+        self.assertIn("20%", told["clip"])
+        self.assertLessEqual(told["width"], 1280)
+        self.assertEqual(told["cut"], 0)
+        self.assertTrue(told["pictures"])
+
+
 class WhatIsWrong(CompareVplTest):
     def refuse(self, code, pattern, *arguments, **more):
         done = run("compare", "vpl", *arguments, **more)
@@ -135,6 +228,12 @@ class WhatIsWrong(CompareVplTest):
         self.refuse(USAGE, "seeds", box, *out, "--seeds", "2")
         self.refuse(USAGE, "vpls", box, *out, "--vpls", "0")
         self.refuse(USAGE, "walk", box, *out, "--walk", "drunk")
+        self.refuse(USAGE, "whole numbers", box, *out, "--vpls", "1.5")
+        self.refuse(USAGE, "ladder: found 0.5, allowed are numbers from 1 to 16777216", box, *out, "--ladder", "0.5")
+        self.refuse(USAGE, "vpl-bounces: is for --walk fixed", box, *out, "--vpl-bounces", "3")
+        self.refuse(USAGE, "nothing to recover", box, *out, "--compensate", "--clamp", "none")
+        self.refuse(USAGE, "known only in sum", box, *out, "--compensate", "--per-bounce", "3")
+        self.refuse(USAGE, "per-bounce: found 17", box, *out, "--per-bounce", "17")
 
     def test_a_scene_without_light(self):
         scene = self.write("dark.obj", "".join(
