@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lambert {
@@ -28,8 +29,8 @@ std::string percentText(double value) {
 std::string percentText(const MeanDeviation& value) {
     const double mean = 100.0 * value.mean;
     if (!std::isfinite(mean) || isTiny(mean) || !(value.deviation > 0.0)) return percentText(value.mean);
-    // As many decimals as show the deviation.
-    int digits = decimals(mean);
+    // As many decimals as show the deviation, and not more than either needs.
+    int digits = decimals(std::max(std::abs(mean), 100.0 * value.deviation));
     while (digits < 4 && 100.0 * value.deviation < 0.5 * std::pow(10.0, -digits)) ++digits;
     return fmt::format("{3}{0:.{2}f} ± {1:.{2}f} %", std::abs(mean), 100.0 * value.deviation, digits,
                        mean < 0.0 ? "−" : "");

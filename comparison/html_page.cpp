@@ -43,6 +43,7 @@ th{font-weight:600;color:var(--soft);font-size:13px;vertical-align:bottom;line-h
 .dense td:first-child,.dense th:first-child{padding-left:0}
 .facts td{text-align:left;overflow-wrap:anywhere}
 .facts td:first-child{color:var(--soft);width:11em;white-space:normal}
+.dense .words,.words{text-align:left;padding-left:16px}
 tr.rule td{padding:0;border-bottom:2px solid var(--line)}
 td.strong{color:var(--strong);font-weight:650}
 .slider{--at:50%;max-width:768px;margin:14px 0 8px}
@@ -78,12 +79,20 @@ for (const figure of document.querySelectorAll('.slider')) {
 }
 )";
 
+/// Of a cell; strong or in a column of words.
+std::string_view classOf(const HtmlTable& table, std::size_t column, std::size_t columns, bool strong) {
+    const bool words = column + table.words >= columns;
+    return words ? strong ? " class=\"words strong\"" : " class=\"words\"" : strong ? " class=\"strong\"" : "";
+}
+
 std::string tableMarkup(const HtmlTable& table, std::string_view style) {
     std::string text = fmt::format("<div class=\"wide\"><table{}>\n", style);
     if (!table.caption.empty()) text += fmt::format("<caption>{}</caption>\n", htmlEscaped(table.caption));
     if (!table.head.empty()) {
         text += "<thead><tr>";
-        for (const std::string& cell : table.head) text += fmt::format("<th scope=\"col\">{}</th>", htmlEscaped(cell));
+        for (std::size_t k = 0; k < table.head.size(); ++k)
+            text += fmt::format("<th scope=\"col\"{}>{}</th>", classOf(table, k, table.head.size(), false),
+                                htmlEscaped(table.head[k]));
         text += "</tr></thead>\n";
     }
     text += "<tbody>\n";
@@ -93,8 +102,9 @@ std::string tableMarkup(const HtmlTable& table, std::string_view style) {
             continue;
         }
         text += "<tr>";
-        for (const HtmlCell& cell : row)
-            text += fmt::format("<td{}>{}</td>", cell.strong ? " class=\"strong\"" : "", htmlEscaped(cell.text));
+        for (std::size_t k = 0; k < row.size(); ++k)
+            text +=
+                fmt::format("<td{}>{}</td>", classOf(table, k, row.size(), row[k].strong), htmlEscaped(row[k].text));
         text += "</tr>\n";
     }
     return text + "</tbody></table></div>\n";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ struct HtmlTable {
     std::vector<std::string> head;           //!< #columns
     std::vector<std::vector<HtmlCell>> rows; //!< #columns each; an empty row is a rule
     bool dense = false;                      //!< smaller, for many columns
+    std::size_t words = 0;                   //!< so many columns at the end hold words, too
 };
 
 /// Something to look at.

@@ -169,6 +169,7 @@ private:
         std::vector<ShareBar> bars;
         HtmlTable table;
         table.dense = true;
+        table.words = 2;
         table.head = {"part", "share", "its own RMS", "its bias", "error without it", "is", "exchanged for"};
         for (const ErrorPart& part : allParts(anatomy)) {
             bars.push_back({part.approximation.part, part.share, part.shareError});

@@ -127,6 +127,8 @@ TEST(FigureText, ThreeDigitsAndUnits) {
     EXPECT_EQ(percentText(0.0), "0");
     EXPECT_EQ(percentText(MeanDeviation{0.238, 0.002}), "23.8 ± 0.2 %");
     EXPECT_EQ(percentText(MeanDeviation{0.1418, 0.0002}), "14.18 ± 0.02 %");
+    EXPECT_EQ(percentText(MeanDeviation{0.000966, 0.040074}), "0.10 ± 4.01 %");
+    EXPECT_EQ(percentText(2e-7), "< 0.0001 %");
     EXPECT_EQ(countText(999.0), "999");
     EXPECT_EQ(countText(1234567.0), "1.23 M");
     EXPECT_EQ(numberLabel(0.2), "0.2");
