@@ -20,7 +20,8 @@ constexpr double kDisplayValue = 0.9; ///< of the percentile, as automaticExposu
 constexpr double kLeastMedian =
     0.08; ///< what half of a picture has at least: with one lit spot in a dark room all else is to be seen
 
-/// The EV at which the 99th percentile of what does not shine by itself becomes 0.9, or its median 0.08 if that is brighter.
+/// The EV at which the 99th percentile of what does not shine by itself becomes 0.9, or its median 0.08 if that is
+/// brighter.
 float exposureOf(const Image& image, const PixelPoints& pixels) {
     std::vector<float> values;
     for (const std::uint32_t pixel : pixels.pixel) {

@@ -58,8 +58,8 @@ std::vector<std::vector<RgbSum>> solvedByBounce(const SolverProblem& problem, Fo
     return result;
 }
 
-/// The irradiance of the patches, as Level::irradiance. Form factors carry only what is reflected: direct light, of which lines that meet small
-/// emitters would give a noisy account, is found for itself.
+/// The irradiance of the patches, as Level::irradiance. Form factors carry only what is reflected: direct light, of
+/// which lines that meet small emitters would give a noisy account, is found for itself.
 std::vector<std::vector<RgbSum>> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces,
                                         std::uint64_t seed, Progress& progress) {
     std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
@@ -172,8 +172,8 @@ ReferenceLight RadiosityReference::at(std::span<const Receiver> receivers, std::
 std::vector<ReferenceLight> RadiosityReference::byBounce(std::span<const Receiver> receivers,
                                                          std::span<const double> weight,
                                                          const PointGatherOptions& options, Progress& progress) const {
-    // From dark patches comes what was not reflected; from those lit by light of k reflections, with the same rays, that and what is
-    // reflected once more.
+    // From dark patches comes what was not reflected; from those lit by light of k reflections, with the same rays,
+    // that and what is reflected once more.
     std::vector<Field> dark;
     for (const Level& level : levels_) dark.emplace_back(level.mesh.size(), RgbSum(0.0));
     dark.push_back(dark.back());

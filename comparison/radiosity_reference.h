@@ -51,8 +51,8 @@ public:
     ReferenceLight at(std::span<const Receiver> receivers, std::span<const double> weight,
                       const PointGatherOptions& options, Progress& progress) const;
 
-    /// The light that was reflected 0, 1, ... ReferenceOptions::bounces times on its way to the receivers: bounces + 1. Each is extrapolated
-    /// by itself.
+    /// The light that was reflected 0, 1, ... ReferenceOptions::bounces times on its way to the receivers: bounces + 1.
+    /// Each is extrapolated by itself.
     std::vector<ReferenceLight> byBounce(std::span<const Receiver> receivers, std::span<const double> weight,
                                          const PointGatherOptions& options, Progress& progress) const;
 

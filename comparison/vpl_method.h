@@ -45,8 +45,8 @@ public:
 
     /// Whether lightByBounce() is known.
     virtual bool knowsBounces() const { return false; }
-    /// The parts of light() that were reflected 0, 1, ... `most` times on their way to the receivers: most + 1 fields. Only if
-    /// knowsBounces().
+    /// The parts of light() that were reflected 0, 1, ... `most` times on their way to the receivers: most + 1 fields.
+    /// Only if knowsBounces().
     virtual std::vector<std::vector<RgbSum>> lightByBounce(const RayCaster& /*rays*/,
                                                            std::span<const Receiver> /*receivers*/, double /*effort*/,
                                                            std::uint64_t /*seed*/, std::uint32_t /*most*/,

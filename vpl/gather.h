@@ -35,8 +35,8 @@ struct Gathered {
     std::vector<glm::dvec3> irradiance;  //!< #receivers, E per m²
     std::vector<glm::dvec3> cutAt;       //!< #receivers: what the bound took away from each; in part recovered
     std::vector<glm::dvec3> recoveredAt; //!< #receivers: what recovery gave back to each; empty without it
-    /// #receivers: radiance that they send by their gloss, see ReceiverGloss, toward their eyes: of the lights as bounded, of lights without
-    /// area and of the environment. Empty if none has gloss.
+    /// #receivers: radiance that they send by their gloss, see ReceiverGloss, toward their eyes: of the lights as
+    /// bounded, of lights without area and of the environment. Empty if none has gloss.
     std::vector<glm::dvec3> glossyRadiance;
     glm::dvec3 cut{0.0}, recovered{0.0}; //!< their means over the receivers
     std::uint64_t shadowRays = 0;
@@ -50,14 +50,14 @@ double largestGeometricTerm(const Scene& scene, double bound);
 ///
 ///     E(x) = Σ Φ/π min(cosθ_x cosθ_v / d², G_max) V(x, v)  +  point, spot: I cosθ_x / d²  +  directional: E_⊥ cosθ_x
 ///
-/// one shadow ray each, in packets from a light to neighbouring receivers; and what the environment gives directly, by rays.
-/// Lobes of lights (see VirtualPointLight) count with
+/// one shadow ray each, in packets from a light to neighbouring receivers; and what the environment gives directly, by
+/// rays. Lobes of lights (see VirtualPointLight) count with
 ///
 ///     Φ_s/π min((P+1)/2 max(0, r·ω)^P cosθ_x / d², G_max)
 ///
-/// and the gloss of receivers reflects what arrives toward their eyes, see PhongLobe. Recovery knows only diffuse light: together
-/// with either it is refused. The same whatever the number of threads. Throws UsageError for that and for options out of range,
-/// Cancelled.
+/// and the gloss of receivers reflects what arrives toward their eyes, see PhongLobe. Recovery knows only diffuse
+/// light: together with either it is refused. The same whatever the number of threads. Throws UsageError for that and
+/// for options out of range, Cancelled.
 Gathered gatherIrradiance(const RayCaster& rays, std::span<const VirtualPointLight> lights,
                           std::span<const Receiver> receivers, const GatherOptions& options, Progress& progress);
 

@@ -9,8 +9,8 @@ namespace lambert {
 /// Whether any of them has gloss.
 bool anyGlossy(std::span<const Receiver> receivers);
 
-/// ρ_s / cosθ_eye: the factor of a receiver's lobe (see PhongLobe) that is the same for light from everywhere; black without gloss, or
-/// if the eye is below the horizon.
+/// ρ_s / cosθ_eye: the factor of a receiver's lobe (see PhongLobe) that is the same for light from everywhere; black
+/// without gloss, or if the eye is below the horizon.
 glm::dvec3 glossyScale(const Receiver& receiver);
 
 /// Adds to a block, whose terms are 0 where a light does not arrive, what the light's lobe gives,

@@ -11,13 +11,14 @@
 
 namespace lambert {
 
-/// Gloss beside a surface's diffuse reflection: what arrives from a direction is spread about the mirrored direction r with the
-/// density (P+1)/2π max(0, r·ω)^P per sr (B. T. Phong, CACM 18(6), 1975, normalised). As a BRDF, for light reflected to ω_o:
+/// Gloss beside a surface's diffuse reflection: what arrives from a direction is spread about the mirrored direction r
+/// with the density (P+1)/2π max(0, r·ω)^P per sr (B. T. Phong, CACM 18(6), 1975, normalised). As a BRDF, for light
+/// reflected to ω_o:
 ///
 ///     f = ρ_s (P+1)/2π max(0, r·ω_o)^P / cosθ_o
 ///
-/// It reflects ρ_s of the light, but for the part of the lobe that lies below the horizon: that is absorbed, up to half of it at grazing
-/// incidence. It is not reciprocal: f(i, o) cosθ_o is symmetric, f is not.
+/// It reflects ρ_s of the light, but for the part of the lobe that lies below the horizon: that is absorbed, up to half
+/// of it at grazing incidence. It is not reciprocal: f(i, o) cosθ_o is symmetric, f is not.
 struct PhongLobe {
     glm::vec3 reflectance{0.0F}; //!< ρ_s per channel; with the diffuse one at most 1
     float exponent = 0.0F;       //!< P, 0 to 1e6: 0 a hemisphere about r, 1 a cosine, 10 dull, 1000 nearly a mirror

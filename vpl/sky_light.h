@@ -15,8 +15,8 @@ namespace lambert {
 std::vector<glm::dvec3> skyLight(const RayCaster& rays, std::span<const Receiver> receivers, std::uint32_t skyRays,
                                  std::uint64_t seed, Progress& progress);
 
-/// The radiance that receivers with gloss send to their eyes of the environment, by this many rays from each, distributed as their lobes:
-/// #receivers, or nothing without an environment or gloss. Otherwise as above.
+/// The radiance that receivers with gloss send to their eyes of the environment, by this many rays from each,
+/// distributed as their lobes: #receivers, or nothing without an environment or gloss. Otherwise as above.
 std::vector<glm::dvec3> glossySkyLight(const RayCaster& rays, std::span<const Receiver> receivers,
                                        std::uint32_t skyRays, std::uint64_t seed, Progress& progress);
 

@@ -30,8 +30,8 @@ struct TraceOptions {
     Walk walk = Walk::Quasi;
     std::uint32_t bounces = 4;         //!< of fixed walks; 0 to 126
     Sampler sampler = Sampler::Halton; //!< of places and directions; Halton or Random
-    /// Of each of Scene::materials, beside its diffuse reflection, on all sides that have the material: lights get lobes, and particles
-    /// are carried on by them. Empty: none.
+    /// Of each of Scene::materials, beside its diffuse reflection, on all sides that have the material: lights get
+    /// lobes, and particles are carried on by them. Empty: none.
     std::vector<PhongLobe> gloss{};
     std::uint64_t seed = 0; //!< of the Halton sequence's scrambling, 0 for none; of the random numbers
 };
@@ -39,13 +39,13 @@ struct TraceOptions {
 /// Throws UsageError for options out of range.
 void checkTrace(const TraceOptions& options);
 
-/// Throws UsageError if there is gloss for another number of materials, one would reflect more than it receives, or an exponent is out
-/// of range.
+/// Throws UsageError if there is gloss for another number of materials, one would reflect more than it receives, or an
+/// exponent is out of range.
 void checkGloss(const Scene& scene, std::span<const PhongLobe> gloss);
 
 /// Where the particles' flux went, per channel; sums over particles, so that they balance but for noise:
-/// emitted + received = absorbed + below horizon + back faces + escaped + lost. Particles of lights without area that no surface receives
-/// are not counted.
+/// emitted + received = absorbed + below horizon + back faces + escaped + lost. Particles of lights without area that
+/// no surface receives are not counted.
 struct ParticleFlux {
     glm::dvec3 emitted{0.0};      //!< by surfaces
     glm::dvec3 received{0.0};     //!< by surfaces, from lights without area
@@ -75,14 +75,15 @@ struct VirtualPointLights {
 /// in bases 2 and 3 for the light and the place on it, and in the next two primes for every further direction. At level k the
 /// first S_k = ⌊ρ̄ᵏ N⌋ particles leave lights of flux Φ_0/N · N/S_k · Π ρ(x_m), ρ̄ being the mean reflectance.
 ///
-/// With gloss a light has a diffuse flux and a lobe, and its particle goes on by one of the two, chosen in proportion to their fluxes
-/// (sum of the channels) by the first number of its direction, which is then rescaled.
+/// With gloss a light has a diffuse flux and a lobe, and its particle goes on by one of the two, chosen in proportion
+/// to their fluxes (sum of the channels) by the first number of its direction, which is then rescaled.
 ///
 /// The same whatever the number of threads. No lights if nothing emits. Throws UsageError for options out of range and as
 /// checkGloss, Cancelled.
 VirtualPointLights traceLights(const RayCaster& rays, const TraceOptions& options, Progress& progress);
 
-/// ρ̄: the mean over all sides that reflect, by area, and over the channels; with that of gloss (see TraceOptions). 0 without any.
+/// ρ̄: the mean over all sides that reflect, by area, and over the channels; with that of gloss (see TraceOptions). 0
+/// without any.
 double meanReflectance(const Scene& scene, std::span<const PhongLobe> gloss = {});
 
 } // namespace lambert

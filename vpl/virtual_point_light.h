@@ -17,8 +17,8 @@ struct LightLobe {
 
 /// A point of a surface that stands for a share of the light that leaves the scene's surfaces.
 ///
-/// It shines as a diffuse surface does: a receiver at distance d in the direction ω gets  E = Φ/π · cosθ_receiver cosθ_light / d²
-/// if nothing stands between; and of its lobe  E = Φ_s (P+1)/2π max(0, r·ω)^P · cosθ_receiver / d².
+/// It shines as a diffuse surface does: a receiver at distance d in the direction ω gets  E = Φ/π · cosθ_receiver
+/// cosθ_light / d² if nothing stands between; and of its lobe  E = Φ_s (P+1)/2π max(0, r·ω)^P · cosθ_receiver / d².
 struct VirtualPointLight {
     glm::vec3 position{0.0F}; //!< on the surface, metres
     glm::vec3 normal{0.0F};   //!< unit length, to the side that shines

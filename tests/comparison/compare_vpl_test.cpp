@@ -158,8 +158,8 @@ TEST(Bounces, OfTheFurnaceArePowersOfItsReflectance) {
     }
 }
 
-// All light is the sum of its bounces: of the method to rounding; of the reference, each part of which is extrapolated by itself, within
-// its own error, which bounds that of the sum where bounces err alike.
+// All light is the sum of its bounces: of the method to rounding; of the reference, each part of which is extrapolated
+// by itself, within its own error, which bounds that of the sum where bounces err alike.
 TEST(Bounces, OfTheCornellBoxMakeAllLight) {
     constexpr int kMost = 16;
     const InstantRadiosityChoice choice{.walk = Walk::Fixed, .bounces = kMost};

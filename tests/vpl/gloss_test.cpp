@@ -35,8 +35,8 @@ VirtualPointLight lobeLight(const glm::vec3& axis, float exponent) {
     return light;
 }
 
-// Points on the unit sphere that look at the light, n² of them in equal areas of the hemisphere above the horizon, by the middle
-// points of cells: the rule errs by P (P+1) / (24 · 500²), 0.0004 for P = 50.
+// Points on the unit sphere that look at the light, n² of them in equal areas of the hemisphere above the horizon, by
+// the middle points of cells: the rule errs by P (P+1) / (24 · 500²), 0.0004 for P = 50.
 double fluxAbove(const VplCase& c, const VirtualPointLight& light) {
     constexpr int n = 500;
     std::vector<Receiver> receivers;
@@ -60,7 +60,8 @@ TEST(LightLobe, UprightSendsAllItsFluxAbove) {
         EXPECT_NEAR(fluxAbove(c, lobeLight({0, 0, 1}, exponent)), 1.0, 1e-3) << exponent;
 }
 
-// Of a hemisphere tilted by θ the part above the horizon is 1 − θ/π, of a cosine (1 + cosθ)/2; of a lobe that lies down one half.
+// Of a hemisphere tilted by θ the part above the horizon is 1 − θ/π, of a cosine (1 + cosθ)/2; of a lobe that lies down
+// one half.
 TEST(LightLobe, TiltedLosesWhatLiesBelowTheHorizon) {
     const VplCase c(emptySpace());
     for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
@@ -72,7 +73,8 @@ TEST(LightLobe, TiltedLosesWhatLiesBelowTheHorizon) {
     EXPECT_NEAR(fluxAbove(c, lobeLight({1, 0, 0}, 40.0F)), 0.5, 2e-3);
 }
 
-// E = (P+1)/2π Φ h^(P+1) / d^(P+3) at distance d from a light that shines straight down on a plane h below; in float to 1e-5.
+// E = (P+1)/2π Φ h^(P+1) / d^(P+3) at distance d from a light that shines straight down on a plane h below; in float to
+// 1e-5.
 TEST(LightLobe, OnAPlaneBelowIsTheClosedForm) {
     const VplCase c(emptySpace());
     for (const double exponent : {0.0, 1.0, 7.0, 50.0}) {
@@ -128,8 +130,8 @@ Scene lampOverFloor() {
     return quadScene(quads, std::array{greyMaterial("lamp", 0.0F, 3.0F), greyMaterial("floor", 0.0F)});
 }
 
-// In a mirror of ρ_s = 0.8 the lamp's middle has 0.8 of its radiance, and beside it is nothing. 65536 lights, of which the lobe sees a
-// hundred: 2 % for their noise and for the lobe's width, 1/P of the curvature of cosines.
+// In a mirror of ρ_s = 0.8 the lamp's middle has 0.8 of its radiance, and beside it is nothing. 65536 lights, of which
+// the lobe sees a hundred: 2 % for their noise and for the lobe's width, 1/P of the curvature of cosines.
 TEST(ReceiverGloss, OfALargeExponentIsAMirror) {
     const VplCase c(lampOverFloor());
     const VirtualPointLights lights = c.trace({.particles = 65536});
@@ -168,7 +170,8 @@ TEST(ReceiverGloss, ShowsLightsWithoutAreaAndTheSky) {
     const double toEye = 4.0 / std::sqrt(20.0);
     const double expected = 50.0 * 0.8 / 25.0 * 0.5 * phongDensity(20.0, cosine) / toEye;
     EXPECT_NEAR(radiance(scene), expected, 1e-5 * expected);
-    // Of a sky that is 1 everywhere, seen from straight above: ρ_s (P+1) ∫ cos^(P+1) = ρ_s (P+1)/(P+2). By 1024 stratified rays.
+    // Of a sky that is 1 everywhere, seen from straight above: ρ_s (P+1) ∫ cos^(P+1) = ρ_s (P+1)/(P+2). By 1024
+    // stratified rays.
     scene.lights.clear();
     scene.environment = std::make_shared<Environment>(Environment::constant(Rgb(1.0F)));
     receiver.gloss.toEye = {0, 0, 1};
@@ -182,9 +185,9 @@ std::vector<PhongLobe> glossOfFloor(const Scene& scene, const Rgb& reflectance, 
     return gloss;
 }
 
-// The same light two ways: lobes that particles leave on the floor shine on a wall point; and points of the floor look toward the wall
-// point and reflect the lamp's own lights, weighted as an emitter would be. Over 16 seeds; four standard errors of the difference,
-// odds of 1 in 1000 by Student's distribution.
+// The same light two ways: lobes that particles leave on the floor shine on a wall point; and points of the floor look
+// toward the wall point and reflect the lamp's own lights, weighted as an emitter would be. Over 16 seeds; four
+// standard errors of the difference, odds of 1 in 1000 by Student's distribution.
 TEST(Gloss, OfLightsIsThatOfReceivers) {
     const VplCase c(lampOverFloor());
     const Receiver sensor{{2.2F, 0.6F, 0.7F}, glm::normalize(glm::vec3(-1.0F, 0.1F, -0.4F))};
@@ -224,8 +227,9 @@ TEST(Gloss, OfLightsIsThatOfReceivers) {
     EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standardError, b.standardError));
 }
 
-// A point light over a mirror is as if there were a second one below, but for the lobe's width: its mean direction is shorter than 1 by
-// 1/P and its light spreads over 1/√P. Over 8 seeds, five standard errors (Student, 7 degrees of freedom: 1 in 600) and 1/P twice.
+// A point light over a mirror is as if there were a second one below, but for the lobe's width: its mean direction is
+// shorter than 1 by 1/P and its light spreads over 1/√P. Over 8 seeds, five standard errors (Student, 7 degrees of
+// freedom: 1 in 600) and 1/P twice.
 TEST(Gloss, OfALargeExponentMakesAMirrorImageOfAPointLight) {
     const std::array<std::array<glm::vec3, 4>, 1> quads{{{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}}}};
     Scene scene = quadScene(quads, std::array{greyMaterial("floor", 0.0F)});
@@ -258,8 +262,9 @@ Scene greyRoom() {
     return boxScene({4.0F, 3.0F, 2.5F}, walls);
 }
 
-// Every hit leaves 0.4 of the flux diffusely and 0.3 in a lobe. What goes on is chosen by chance, so that sums balance on average: a
-// walk's weight varies by less than its mean, of 20 000 walks 0.7 %; four of them. Survivors of roulette: 0.7 ± 0.0032, four of them.
+// Every hit leaves 0.4 of the flux diffusely and 0.3 in a lobe. What goes on is chosen by chance, so that sums balance
+// on average: a walk's weight varies by less than its mean, of 20 000 walks 0.7 %; four of them. Survivors of roulette:
+// 0.7 ± 0.0032, four of them.
 TEST(GlossyWalk, KeepsTheFlux) {
     const VplCase c(greyRoom());
     const std::vector<PhongLobe> gloss = glossOfFloor(c.scene, Rgb(0.3F), 8.0F);
@@ -281,9 +286,9 @@ TEST(GlossyWalk, KeepsTheFlux) {
     }
 }
 
-// Cosine-distributed light on a wall: of a lobe with P = 1 about the mirrored direction (1 + cosθ)/2 lies above the horizon, its mean over
-// 2 sinθ cosθ dθ is 5/6. One sixth of a lobe's flux goes below. One particle in 14 has that end with the weight 0.7: of 50 000 the mean has a standard deviation of at most 0.0008;
-// four of them.
+// Cosine-distributed light on a wall: of a lobe with P = 1 about the mirrored direction (1 + cosθ)/2 lies above the
+// horizon, its mean over 2 sinθ cosθ dθ is 5/6. One sixth of a lobe's flux goes below. One particle in 14 has that end
+// with the weight 0.7: of 50 000 the mean has a standard deviation of at most 0.0008; four of them.
 TEST(GlossyWalk, LosesBelowTheHorizonWhatTheLobeHasThere) {
     const VplCase c(greyRoom());
     const VirtualPointLights lights = c.trace({.particles = 50000,
