@@ -222,7 +222,9 @@ class Checkpoint(Solution):
         self.assertEqual(run(*command).returncode, OK)
         self.assertTrue(parts.read_bytes() == whole.read_bytes())
         self.assertEqual(read_json(self.folder / "parts.json")["iterations"], report["iterations"])
-        self.assertEqual(sorted(os.listdir(self.folder)), ["parts.glb", "parts.json", "report.json", "whole.glb"])
+        # SIGKILL in the midst of a writing leaves that file under its temporary name; no process can clean up after it.
+        left = sorted(name for name in os.listdir(self.folder) if not name.startswith(".lambert-"))
+        self.assertEqual(left, ["parts.glb", "parts.json", "report.json", "whole.glb"])
 
     def test_of_another_solver_is_a_usage_error(self):
         checkpoint = self.folder / "state"
