@@ -64,7 +64,7 @@ std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedS
         lines.cross(packet, crossings);
         for (std::size_t lane = 0; lane < lanes; ++lane)
             result[first + lane] =
-                patchAmong(crossings[static_cast<int>(lane)], other.mesh, first + lane < mesh.frontCount);
+                patchAmong(crossings.of(static_cast<int>(lane)), other.mesh, first + lane < mesh.frontCount);
     }
     return result;
 }

@@ -1,7 +1,6 @@
 #include "formfactors/line_spans.h"
 
 #include <algorithm>
-#include <array>
 
 namespace lambert {
 
@@ -11,30 +10,39 @@ LineSpans::LineSpans(const PatchMesh& mesh, const LineCaster& caster) : mesh_(me
     if (std::find(occluder_.begin(), occluder_.end(), true) == occluder_.end()) occluder_.clear();
 }
 
-/// The k-th crossings of all lines together: neighbouring lines mostly cross the same polygon, for which the lookup is fastest.
+/// Rows that cross one polygon, for which the lookup is fastest, by themselves, and all others together.
 void LineSpans::findPatches(Scratch& scratch) const {
-    for (std::size_t k = 0;; ++k) {
-        std::array<int, LinePacket::kSize> lanes{}; // that have a k-th crossing
-        std::size_t count = 0;
-        for (int lane = 0; lane < LinePacket::kSize; ++lane) {
-            lanes[count] = lane;
-            count += scratch.crossings[lane].size() > k ? 1 : 0;
+    const std::span<const LineCrossings::Row> rows = scratch.crossings.rows();
+    const std::size_t most = rows.size() * LinePacket::kSize;
+    if (scratch.fronts.size() < rows.size()) {
+        scratch.fronts.resize(rows.size());
+        scratch.polygon.resize(most);
+        scratch.patch.resize(most + 1); // read one past the end
+        scratch.u.resize(most);
+        scratch.v.resize(most);
+    }
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const LineCrossings::Row& row = rows[k];
+        if (PatchLookup::onOnePolygon(row.polygon)) {
+            mesh_.lookup.patchesAt(row.polygon, row.u, row.v, scratch.fronts[k].of);
+            continue;
         }
-        if (count == 0) return;
-        if (scratch.hits.size() == k) scratch.hits.emplace_back();
-        Scratch::Hits& hits = scratch.hits[k];
-        // Where few are missing, others stand for them, so that the polygons may still be all the same.
-        const Crossing& other = scratch.crossings[lanes[0]][k];
-        std::fill_n(hits.polygon, 16, count >= 8 ? other.polygon : kNone);
-        std::fill_n(hits.u, 16, other.u);
-        std::fill_n(hits.v, 16, other.v);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Crossing& crossing = scratch.crossings[lanes[i]][k];
-            hits.polygon[lanes[i]] = crossing.polygon;
-            hits.u[lanes[i]] = crossing.u;
-            hits.v[lanes[i]] = crossing.v;
+        for (int line = 0; line < LinePacket::kSize; ++line) {
+            scratch.polygon[count] = row.polygon[line];
+            scratch.u[count] = row.u[line];
+            scratch.v[count] = row.v[line];
+            count += row.polygon[line] != kNone ? 1 : 0;
         }
-        mesh_.lookup.patchesAt(hits.polygon, hits.u, hits.v, hits.patch);
+    }
+    mesh_.lookup.patchesAt(std::span(scratch.polygon).first(count), scratch.u, scratch.v, scratch.patch);
+    const std::uint32_t* next = scratch.patch.data();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (PatchLookup::onOnePolygon(rows[k].polygon)) continue;
+        for (int line = 0; line < LinePacket::kSize; ++line) {
+            scratch.fronts[k].of[line] = *next;
+            next += rows[k].polygon[line] != kNone ? 1 : 0;
+        }
     }
 }
 

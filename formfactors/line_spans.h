@@ -24,12 +24,13 @@ public:
     class Scratch {
         friend class LineSpans;
         LineCrossings crossings;
-        /// The k-th crossings of the packet's lines, for the lookup.
-        struct Hits {
-            alignas(64) std::uint32_t polygon[16], patch[16];
-            alignas(64) float u[16], v[16];
+        struct alignas(64) Patches {
+            std::uint32_t of[LinePacket::kSize];
         };
-        std::vector<Hits> hits;
+        std::vector<Patches> fronts; ///< by row of the crossings: the patches on the fronts of what is crossed
+        std::vector<std::uint32_t> polygon,
+            patch; ///< of the rows that cross different polygons, one crossing after the other
+        std::vector<float> u, v;
     };
 
     /// Calls use(end, end) for every stretch of the packet's lines, in order along each.
@@ -37,16 +38,19 @@ public:
     void visit(const LinePacket& packet, Scratch& scratch, Use&& use) const {
         caster_.cross(packet, scratch.crossings);
         findPatches(scratch);
+        const std::span<const LineCrossings::Row> rows = scratch.crossings.rows();
         for (int line = 0; line < LinePacket::kSize; ++line) {
             std::uint32_t left = out(); // what the line left last
-            const std::span<const Crossing> crossings = scratch.crossings[line];
-            for (std::size_t k = 0; k < crossings.size(); ++k) {
-                const Crossing& crossing = crossings[k];
-                std::uint32_t front = scratch.hits[k].patch[line];
-                std::uint32_t behind = std::min(mesh_.lookup.backPatch(crossing.polygon, front), back());
-                if (!occluder_.empty() && occluder_[crossing.polygon]) front = behind = back();
-                use(left, crossing.front ? front : behind);
-                left = crossing.front ? behind : front;
+            for (std::size_t k = 0; k < scratch.crossings.count(line); ++k) {
+                const LineCrossings::Row& row = rows[k];
+                std::uint32_t front = scratch.fronts[k].of[line];
+                std::uint32_t behind = back();
+                if (mesh_.lookup.hasBacks())
+                    behind = std::min(mesh_.lookup.backPatch(row.polygon[line], front), back());
+                if (!occluder_.empty() && occluder_[row.polygon[line]]) front = behind = back();
+                const bool fromFront = row.front[line] != 0;
+                use(left, fromFront ? front : behind);
+                left = fromFront ? behind : front;
             }
             use(left, out());
         }

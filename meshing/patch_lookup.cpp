@@ -106,6 +106,17 @@ void PatchLookup::addGrid(const Scene& scene, const Polygon& polygon, std::uint3
         if (std::max(std::abs(skew.x), std::abs(skew.y)) > 1e-5F) entry.skew = skew;
     }
     entries_.push_back(entry);
+    Chart chart;
+    chart.first = first;
+    if (entry.skew != glm::vec2(0.0F)) {
+        chart.firstCell = 0;
+    } else {
+        chart.axisU = {static_cast<float>(columns), 0.0F};
+        chart.axisV = {0.0F, static_cast<float>(rows)};
+        chart.lastColumn = static_cast<int>(columns) - 1;
+        chart.lastRow = static_cast<int>(rows) - 1;
+    }
+    places_.push_back(columns * rows == 1 ? first : addCharts(chart, chart));
 }
 
 void PatchLookup::addPatches(const Scene& scene, const Polygon& polygon, std::uint32_t first,
@@ -147,6 +158,16 @@ void PatchLookup::addPatches(const Scene& scene, const Polygon& polygon, std::ui
         locator.axisV[1] = locator.axisV[0];
     }
     locator.firstCell = static_cast<std::uint32_t>(cells_.size());
+    std::array<Chart, 2> charts;
+    for (std::size_t half = 0; half < 2; ++half)
+        charts[half] = {locator.origin[half],
+                        locator.axisU[half],
+                        locator.axisV[half],
+                        static_cast<int>(locator.columns) - 1,
+                        static_cast<int>(locator.rows) - 1,
+                        locator.firstCell,
+                        first};
+    places_.push_back(addCharts(charts[0], charts[1]));
     locator.firstCorner = static_cast<std::uint32_t>(gridCorners_.size());
     for (const auto& patch : corners)
         for (std::size_t k = 0; k < 4; ++k)
@@ -267,9 +288,18 @@ void PatchLookup::locate16(const Entry& entry, const float (&u)[16], const float
     for (std::uint32_t& p : patch) p += entry.first;
 }
 
+/// Charts of a polygon's halves: for points with u + v <= 1 and for the others.
+std::uint32_t PatchLookup::addCharts(const Chart& near, const Chart& far) {
+    charts_.push_back(near);
+    charts_.push_back(far);
+    return kCharts + static_cast<std::uint32_t>(charts_.size() - 2);
+}
+
+bool PatchLookup::onOnePolygon(const std::uint32_t (&polygon)[16]) { return polygon[0] != kNone && allEqual(polygon); }
+
 void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
                             std::uint32_t (&patch)[16]) const {
-    if (polygon[0] != kNone && allEqual(polygon)) {
+    if (onOnePolygon(polygon)) {
         const Entry& entry = entries_[polygon[0]];
         if (entry.locator != kNone)
             locate16(entry, u, v, patch);
@@ -277,55 +307,60 @@ void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)
             gridPatches(entry, u, v, patch);
         return;
     }
-    mixedPatches(polygon, u, v, patch);
+    std::uint32_t hits[16], found[16];
+    float hitU[16], hitV[16];
+    std::size_t count = 0;
+    for (int lane = 0; lane < 16; ++lane) {
+        hits[count] = polygon[lane];
+        hitU[count] = u[lane];
+        hitV[count] = v[lane];
+        count += polygon[lane] != kNone ? 1 : 0;
+    }
+    findSome(hits, hitU, hitV, count, found);
+    const std::uint32_t* next = found;
+    for (int lane = 0; lane < 16; ++lane) {
+        patch[lane] = polygon[lane] != kNone ? *next : patch[lane];
+        next += polygon[lane] != kNone ? 1 : 0;
+    }
 }
 
-/// In steps, each for all hits, so that the memory is asked for all cells and then for all edges at once.
-void PatchLookup::mixedPatches(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
-                               std::uint32_t (&patch)[16]) const {
-    struct Hit {
-        const Entry* entry;
-        int lane;
-        float x, y;
-        std::uint32_t cell, code;
-    };
-    std::array<Hit, 16> hits;
-    int count = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-        if (polygon[lane] == kNone) continue;
-        const Entry& entry = entries_[polygon[lane]];
-        if (entry.locator == kNone) {
-            const GridPoint p = gridPoint(u[lane], v[lane], entry.skew);
-            patch[lane] = entry.first + gridIndex(p.t, entry.rows) * entry.columns + gridIndex(p.s, entry.columns);
-            continue;
-        }
-        const Locator& locator = locators_[entry.locator];
-        const glm::vec2 point = cellPoint(locator, u[lane], v[lane]);
-        const std::uint32_t cell = cellAt(locator, point);
-        __builtin_prefetch(&cells_[cell]);
-        hits[static_cast<std::size_t>(count++)] = {&entry, lane, point.x, point.y, cell, 0};
+void PatchLookup::patchesAt(std::span<const std::uint32_t> polygon, std::span<const float> u, std::span<const float> v,
+                            std::span<std::uint32_t> patch) const {
+    for (std::size_t k = 0; k < polygon.size(); k += kSome)
+        findSome(&polygon[k], &u[k], &v[k], std::min(kSome, polygon.size() - k), &patch[k]);
+}
+
+/// In steps, each for all hits, so that memory is asked for all cells and then for all edges at once; without branches, which
+/// hits on different polygons would make unpredictable.
+void PatchLookup::findSome(const std::uint32_t* polygon, const float* u, const float* v, std::size_t count,
+                           std::uint32_t* patch) const {
+    float x[kSome], y[kSome];
+    std::uint32_t index[kSome], slow[kSome];
+    const std::uint32_t* code[kSome];
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t place = places_[polygon[k]];
+        const bool only = place < kCharts;
+        const Chart& chart = charts_[only ? 0 : place - kCharts + (u[k] + v[k] <= 1.0F ? 0 : 1)];
+        x[k] = chart.origin.x + u[k] * chart.axisU.x + v[k] * chart.axisV.x;
+        y[k] = chart.origin.y + u[k] * chart.axisU.y + v[k] * chart.axisV.y;
+        const int column = std::min(std::max(static_cast<int>(x[k]), 0), chart.lastColumn);
+        const int row = std::min(std::max(static_cast<int>(y[k]), 0), chart.lastRow);
+        index[k] = static_cast<std::uint32_t>(row * (chart.lastColumn + 1) + column);
+        code[k] = chart.firstCell == kNone ? &index[k] : &cells_[chart.firstCell + index[k]];
+        patch[k] = only ? place : chart.first;
     }
-    for (int k = 0; k < count; ++k) {
-        Hit& hit = hits[static_cast<std::size_t>(k)];
-        hit.code = cells_[hit.cell];
-        __builtin_prefetch(hit.code < kSplit    ? nullptr
-                           : hit.code < kSearch ? static_cast<const void*>(&splits_[hit.code - kSplit])
-                                                : &candidates_[hit.code - kSearch]);
+    std::size_t slowCount = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t found = *code[k];
+        const bool isSplit = found - kSplit < kSearch - kSplit;
+        const Split& split = splits_[isSplit ? found - kSplit : 0];
+        const std::uint32_t beside[2] = {split.outside, split.inside};
+        const std::uint32_t chosen = beside[split.normal.x * x[k] + split.normal.y * y[k] >= split.offset ? 1 : 0];
+        patch[k] += isSplit ? chosen : found;
+        slow[slowCount] = static_cast<std::uint32_t>(k);
+        slowCount += found >= kSearch ? 1 : 0;
     }
-    for (int k = 0; k < count; ++k) {
-        const Hit& hit = hits[static_cast<std::size_t>(k)];
-        const bool isSplit = hit.code - kSplit < kSearch - kSplit;
-        const Split& split = splits_[isSplit ? hit.code - kSplit : 0];
-        const float side = split.normal.x * hit.x + split.normal.y * hit.y;
-        const std::uint32_t chosen = side >= split.offset ? split.inside : split.outside;
-        patch[hit.lane] = hit.entry->first + (isSplit ? chosen : hit.code);
-    }
-    for (int k = 0; k < count; ++k) {
-        const Hit& hit = hits[static_cast<std::size_t>(k)];
-        if (hit.code >= kSearch)
-            patch[hit.lane] =
-                hit.entry->first + search(locators_[hit.entry->locator], hit.code - kSearch, {hit.x, hit.y});
-    }
+    for (std::size_t k = 0; k < slowCount; ++k) patch[slow[k]] = patchAt(polygon[slow[k]], u[slow[k]], v[slow[k]]);
 }
 
 } // namespace lambert

@@ -30,7 +30,14 @@ public:
     /// The same for 16 hits at once, which is faster. `patch` is left as it is where `polygon` is kNone.
     void patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
                    std::uint32_t (&patch)[16]) const;
+    /// Whether all hits are on one polygon, for which that is fastest.
+    static bool onOnePolygon(const std::uint32_t (&polygon)[16]);
+    /// The same for any number of hits, none of them missing; all of one length.
+    void patchesAt(std::span<const std::uint32_t> polygon, std::span<const float> u, std::span<const float> v,
+                   std::span<std::uint32_t> patch) const;
 
+    /// Whether any polygon has patches on its second side.
+    bool hasBacks() const { return hasBacks_; }
     /// The patch on the other side of a front patch of `polygon`, or kNone if the polygon is one-sided.
     std::uint32_t backPatch(std::uint32_t polygon, std::uint32_t frontPatch) const {
         const Entry& entry = entries_[polygon];
@@ -48,7 +55,10 @@ public:
     void addPatches(const Scene& scene, const Polygon& polygon, std::uint32_t first,
                     std::span<const std::array<std::uint32_t, 4>> corners, std::span<const glm::vec3> positions);
     /// Says where the patches of the polygon's second side begin.
-    void setBack(std::uint32_t polygon, std::uint32_t firstBack) { entries_[polygon].firstBack = firstBack; }
+    void setBack(std::uint32_t polygon, std::uint32_t firstBack) {
+        entries_[polygon].firstBack = firstBack;
+        hasBacks_ = true;
+    }
 
 private:
     struct Entry {
@@ -91,8 +101,6 @@ private:
     };
 
     std::uint32_t locate(const Entry& entry, float u, float v) const;
-    void mixedPatches(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
-                      std::uint32_t (&patch)[16]) const;
     static std::uint32_t cellAt(const Locator& locator, glm::vec2 point) {
         const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
         const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
@@ -123,14 +131,30 @@ private:
     void locate16(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]) const;
     static bool decode16(const std::uint32_t* cells, const Split* splits, const float (&x)[16], const float (&y)[16],
                          const std::uint32_t (&cell)[16], std::uint32_t (&code)[16], std::uint32_t (&patch)[16]);
+    /// A locator's or a grid's half, for hits on different polygons.
+    struct Chart {
+        glm::vec2 origin{0.0F}, axisU{0.0F}, axisV{0.0F}; ///< chart → cells, or → patches of a grid
+        std::int32_t lastColumn = 0, lastRow = 0;
+        std::uint32_t firstCell = kNone; ///< into cells_; kNone: a grid; a skewed one has the first cell
+        std::uint32_t first = 0;         ///< patch
+    };
+    std::uint32_t addCharts(const Chart& near, const Chart& far);
+    static constexpr std::size_t kSome = 64;
+    /// For hits on any polygons, at most kSome.
+    void findSome(const std::uint32_t* polygon, const float* u, const float* v, std::size_t count,
+                  std::uint32_t* patch) const;
     static void cells16(const Locator& locator, const float (&u)[16], const float (&v)[16], float (&x)[16],
                         float (&y)[16], std::uint32_t (&cell)[16]);
 
     std::vector<Entry> entries_;
+    std::vector<std::uint32_t> places_; ///< by polygon: its patch if it has but one, or kCharts + index into charts_
+    static constexpr std::uint32_t kCharts = 0x80000000;
+    std::vector<Chart> charts_{Chart{}}; ///< in pairs but for the first, which stands for polygons that have none
+    bool hasBacks_ = false;
     std::vector<Locator> locators_;
     static constexpr std::uint32_t kSplit = 0x80000000;  ///< codes from here: kSplit + index into splits_
     static constexpr std::uint32_t kSearch = 0xC0000000; ///< codes from here: kSearch + index into candidates_
-    std::vector<std::uint32_t> cells_;                   ///< codes; below kSplit: the patch, relative to the first
+    std::vector<std::uint32_t> cells_{kSearch};          ///< codes; below kSplit: the patch, relative to the first
     std::vector<Split> splits_{Split{}};                 ///< the first for cells that have none
     std::vector<std::uint32_t> candidates_;              ///< per searched cell: how many, then the patches
     std::vector<glm::vec2> gridCorners_;                 ///< 4 per patch, in cells; a triangle repeats its last corner

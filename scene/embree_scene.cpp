@@ -52,24 +52,28 @@ RTCGeometry triangleGeometry(RTCDevice device, const Scene& scene, std::span<con
 
 } // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters)
-    : scale_(scaleToOne(boundsOf(scene))), anyHoles_(false) {
+EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) : scale_(scaleToOne(boundsOf(scene))) {
     device_.reset(rtcNewDevice(nullptr));
     if (device_ == nullptr)
         throw SystemError(
             fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
     embree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(handle(), RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
-    std::array<std::vector<std::uint32_t>, 2> halves;  // by GeometryId
+    std::vector<std::uint32_t> withHoles;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-        std::vector<std::uint32_t>& list = halves[hasHoles(scene, scene.polygons[i]) ? kWithHoles : kOpaque];
+        std::vector<std::uint32_t>& list = hasHoles(scene, scene.polygons[i]) ? withHoles : halves_;
         list.push_back(2 * i);
         if (scene.polygons[i].isQuad()) list.push_back(2 * i + 1);
     }
-    anyHoles_ = !halves[kWithHoles].empty();
-    for (PolygonSet& set : sets_) set.scene = &scene;
-    attach(kOpaque, std::move(halves[kOpaque]), filters.opaque);
-    attach(kWithHoles, std::move(halves[kWithHoles]), filters.withHoles);
+    const std::size_t opaque = halves_.size();
+    halves_.insert(halves_.end(), withHoles.begin(), withHoles.end());
+    bool needed = false;
+    for (std::uint32_t k = 0; k < halves_.size(); ++k) needed |= halves_[k] != k;
+    for (GeometryData& data : data_) data = {&scene, {needed ? halves_.data() : nullptr}, 0};
+    data_[kWithHoles].first = static_cast<std::uint32_t>(opaque);
+    attach(kOpaque, std::span(halves_).first(opaque), filters.opaque);
+    attach(kWithHoles, std::span(halves_).subspan(opaque), filters.withHoles);
+    if (!needed) halves_ = {};
     // On one thread: a parallel build may order the leaves, and so decide ties on shared edges, differently from run to run.
     // (The device's own "threads" setting would limit oneTBB for the whole program.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(handle()); });
@@ -77,15 +81,10 @@ EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters)
         throw SystemError(fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
 }
 
-void EmbreeScene::attach(GeometryId id, std::vector<std::uint32_t> halves, RTCFilterFunctionN filter) {
+void EmbreeScene::attach(GeometryId id, std::span<const std::uint32_t> halves, RTCFilterFunctionN filter) {
     if (halves.empty()) return;
-    RTCGeometry geometry = triangleGeometry(device_.get(), *sets_[id].scene, halves, scale_);
-    for (std::uint32_t k = 0; k < halves.size(); ++k) {
-        if (halves[k] == k) continue;
-        sets_[id].halves = std::move(halves);
-        break;
-    }
-    rtcSetGeometryUserData(geometry, &sets_[id]);
+    RTCGeometry geometry = triangleGeometry(device_.get(), *data_[id].scene, halves, scale_);
+    rtcSetGeometryUserData(geometry, &data_[id]);
     rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcSetGeometryOccludedFilterFunction(geometry, filter);
     rtcCommitGeometry(geometry);
@@ -94,10 +93,10 @@ void EmbreeScene::attach(GeometryId id, std::vector<std::uint32_t> halves, RTCFi
 }
 
 bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane) {
-    const auto& set = *static_cast<const PolygonSet*>(query.geometryUserPtr);
-    const PolygonHit hit = set.hit(RTCHitN_primID(query.hit, query.N, lane), RTCHitN_u(query.hit, query.N, lane),
-                                   RTCHitN_v(query.hit, query.N, lane));
-    return isHole(*set.scene, set.scene->polygons[hit.polygon], hit.u, hit.v);
+    const auto& data = *static_cast<const GeometryData*>(query.geometryUserPtr);
+    const PolygonHit hit = data.triangles.hit(data.first + RTCHitN_primID(query.hit, query.N, lane),
+                                              RTCHitN_u(query.hit, query.N, lane), RTCHitN_v(query.hit, query.N, lane));
+    return isHole(*data.scene, data.scene->polygons[hit.polygon], hit.u, hit.v);
 }
 
 float coordinateTolerance(const Bounds& bounds) { return 1e-6F * largestCoordinate(bounds); }

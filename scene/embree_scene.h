@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace lambert {
@@ -17,19 +18,24 @@ struct PolygonHit {
     float u, v; //!< see polygonPoint
 };
 
-/// Polygons of one Embree geometry, as triangles: corners 0, 1, 3 (of a triangle 0, 1, 2) and, of a quad, 2, 3, 1. User data of the
-/// geometry.
-struct PolygonSet {
-    const Scene* scene = nullptr;
-    /// Of Embree's triangles, twice the index into Scene::polygons, and 1 more for a quad's second half; ascending. Empty if it
-    /// would say k of the k-th throughout.
-    std::vector<std::uint32_t> halves;
+/// Polygons as Embree has them: corners 0, 1, 3 (of a triangle 0, 1, 2) and, of a quad, 2, 3, 1. Its triangles are numbered through
+/// all geometries.
+struct TriangleTable {
+    /// Of each triangle, twice the index into Scene::polygons, and 1 more for a quad's second half. Null if it would say k of the
+    /// k-th throughout.
+    const std::uint32_t* halves = nullptr;
 
-    std::uint32_t half(unsigned primitive) const { return halves.empty() ? primitive : halves[primitive]; }
-    PolygonHit hit(unsigned primitive, float u, float v) const {
-        const std::uint32_t h = half(primitive);
-        return (h & 1U) == 0 ? PolygonHit{h >> 1U, u, v} : PolygonHit{h >> 1U, 1.0F - u, 1.0F - v};
+    PolygonHit hit(std::uint32_t triangle, float u, float v) const {
+        const std::uint32_t half = halves == nullptr ? triangle : halves[triangle];
+        return (half & 1U) == 0 ? PolygonHit{half >> 1U, u, v} : PolygonHit{half >> 1U, 1.0F - u, 1.0F - v};
     }
+};
+
+/// User data of an Embree geometry.
+struct GeometryData {
+    const Scene* scene = nullptr;
+    TriangleTable triangles;
+    std::uint32_t first = 0; ///< number of the geometry's first triangle
 };
 
 /// The source polygons of a scene as Embree holds them: as triangles, which it meets at twice the rate of its own quads. Only for
@@ -41,7 +47,7 @@ struct PolygonSet {
 class EmbreeScene {
 public:
     /// What is called for every hit before it counts; null: nothing. For polygons with holes and for all others, so that
-    /// these need no filter. Its geometryUserPtr is a const PolygonSet.
+    /// these need no filter. Its geometryUserPtr is a const GeometryData.
     struct Filters {
         RTCFilterFunctionN opaque = nullptr;
         RTCFilterFunctionN withHoles = nullptr;
@@ -55,15 +61,15 @@ public:
     RTCScene handle() const { return embree_.get(); }
     /// What the origins of rays must be multiplied by; in the same unit are the distances of rays of unit directions.
     float scale() const { return scale_; }
-    const PolygonSet& polygons(unsigned geometry) const { return sets_[geometry]; }
-    /// Of all hits, in scenes without holes; null in others.
-    const PolygonSet* onlyPolygons() const { return anyHoles_ ? nullptr : &sets_[kOpaque]; }
+    TriangleTable triangles() const { return data_[kOpaque].triangles; }
+    /// Number of the first triangle of one of the two geometries.
+    std::uint32_t firstTriangle(unsigned geometry) const { return data_[geometry].first; }
 
 private:
     /// Embree's number of a geometry.
     enum GeometryId : unsigned { kOpaque = 0, kWithHoles = 1 };
 
-    void attach(GeometryId id, std::vector<std::uint32_t> halves, RTCFilterFunctionN filter);
+    void attach(GeometryId id, std::span<const std::uint32_t> halves, RTCFilterFunctionN filter);
 
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -71,8 +77,8 @@ private:
     };
 
     float scale_;
-    bool anyHoles_;
-    std::array<PolygonSet, 2> sets_; //!< by GeometryId
+    std::vector<std::uint32_t> halves_; //!< of triangles(); empty if these need none
+    std::array<GeometryData, 2> data_;  //!< by GeometryId
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> embree_;
 };

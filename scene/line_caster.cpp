@@ -4,49 +4,158 @@
 #include "scene/embree_scene.h"
 #include "scene/surface.h"
 
+#include <boost/container/small_vector.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <new>
 
 namespace lambert {
 
 namespace {
 
+using Row = LineCrossings::Row;
+using Crossings = boost::container::small_vector<Crossing, 16>;
+constexpr int kSize = LinePacket::kSize;
+constexpr std::uint32_t kMissing = 0xFFFFFFFF; ///< in the place of a crossing that a line does not have
+
 /// What the filter needs besides Embree's query, which begins with the context.
 struct Query {
     RTCIntersectContext context;
-    std::array<std::vector<Crossing>, LinePacket::kSize>* crossings;
+    std::vector<Row>* rows;
+    std::uint32_t* count;
     bool outOfMemory = false; ///< exceptions must not pass through Embree
 };
 
-/// Embree's filter: notes every hit and rejects it, so that the traversal goes on to the line's end.
+/// Embree's filter: notes every hit and rejects it, so that the traversal goes on to the line's end. Notes for the polygon the number
+/// of Embree's triangle, twice, and 1 more where the line meets its front.
 template <bool WithHoles>
 void noteCrossing(const RTCFilterFunctionNArguments* arguments) {
     auto& query = *reinterpret_cast<Query*>(arguments->context);
-    const auto& polygons = *static_cast<const PolygonSet*>(arguments->geometryUserPtr);
+    const std::uint32_t first = static_cast<const GeometryData*>(arguments->geometryUserPtr)->first;
     RTCHitN* hit = arguments->hit;
     RTCRayN* ray = arguments->ray;
     const unsigned n = arguments->N;
+    std::uint32_t lanes = 0; // first, because branches on each would be unpredictable
     for (unsigned lane = 0; lane < n; ++lane) {
-        if (arguments->valid[lane] == 0) continue;
+        lanes |= (arguments->valid[lane] != 0 ? 1U : 0U) << lane;
         arguments->valid[lane] = 0;
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
         if constexpr (WithHoles) {
             if (liesInHole(*arguments, lane)) continue;
         }
-        const PolygonHit found =
-            polygons.hit(RTCHitN_primID(hit, n, lane), RTCHitN_u(hit, n, lane), RTCHitN_v(hit, n, lane));
         const float facing = RTCHitN_Ng_x(hit, n, lane) * RTCRayN_dir_x(ray, n, lane) +
                              RTCHitN_Ng_y(hit, n, lane) * RTCRayN_dir_y(ray, n, lane) +
                              RTCHitN_Ng_z(hit, n, lane) * RTCRayN_dir_z(ray, n, lane);
-        try {
-            (*query.crossings)[RTCRayN_id(ray, n, lane)].push_back(
-                {RTCRayN_tfar(ray, n, lane), found.u, found.v, found.polygon, facing < 0.0F});
-        } catch (const std::bad_alloc&) {
-            query.outOfMemory = true;
+        const unsigned line = RTCRayN_id(ray, n, lane);
+        if (query.count[line] == query.rows->size()) {
+            try {
+                query.rows->emplace_back();
+            } catch (const std::bad_alloc&) {
+                query.outOfMemory = true;
+                return;
+            }
+        }
+        Row& row = (*query.rows)[query.count[line]++];
+        row.distance[line] = RTCRayN_tfar(ray, n, lane);
+        row.u[line] = RTCHitN_u(hit, n, lane);
+        row.v[line] = RTCHitN_v(hit, n, lane);
+        row.polygon[line] = (first + RTCHitN_primID(hit, n, lane)) * 2 + (facing < 0.0F ? 1U : 0U);
+    }
+}
+
+/// Puts the crossings of every line into order, by distance and then triangle, those that it does not have last. A network of
+/// comparisons, the same for all lines: "merge exchange" of K. E. Batcher, "Sorting networks and their applications", AFIPS 1968, as
+/// algorithm M in D. E. Knuth, The Art of Computer Programming 3, 5.2.2.
+LAMBERT_VECTOR_CLONES
+void sortRows(Row* rows, std::size_t count, const std::uint32_t (&countOf)[kSize]) {
+    for (std::size_t k = 0; k < count; ++k)
+        for (int lane = 0; lane < kSize; ++lane) {
+            const bool missing = countOf[lane] <= k;
+            rows[k].distance[lane] = missing ? std::numeric_limits<float>::max() : rows[k].distance[lane];
+            rows[k].polygon[lane] = missing ? kMissing : rows[k].polygon[lane];
+        }
+    const std::size_t top = std::bit_ceil(count) / 2;
+    for (std::size_t p = top; p > 0; p /= 2) {
+        std::size_t r = 0;
+        std::size_t d = p;
+        for (std::size_t q = top;; q /= 2) {
+            for (std::size_t i = 0; i + d < count; ++i) {
+                if ((i & p) != r) continue;
+                Row& a = rows[i];
+                Row& b = rows[i + d];
+                for (int lane = 0; lane < kSize; ++lane) {
+                    const bool swap = (b.distance[lane] < a.distance[lane]) |
+                                      ((b.distance[lane] == a.distance[lane]) & (b.polygon[lane] < a.polygon[lane]));
+                    const float distance = swap ? b.distance[lane] : a.distance[lane];
+                    b.distance[lane] = swap ? a.distance[lane] : b.distance[lane];
+                    a.distance[lane] = distance;
+                    const float u = swap ? b.u[lane] : a.u[lane];
+                    b.u[lane] = swap ? a.u[lane] : b.u[lane];
+                    a.u[lane] = u;
+                    const float v = swap ? b.v[lane] : a.v[lane];
+                    b.v[lane] = swap ? a.v[lane] : b.v[lane];
+                    a.v[lane] = v;
+                    const std::uint32_t polygon = swap ? b.polygon[lane] : a.polygon[lane];
+                    b.polygon[lane] = swap ? a.polygon[lane] : b.polygon[lane];
+                    a.polygon[lane] = polygon;
+                }
+            }
+            if (q == p) break;
+            d = q - p;
+            r = p;
         }
     }
+}
+
+/// Turns what the filter noted into polygons and their charts. `halves` as in TriangleTable.
+LAMBERT_VECTOR_CLONES
+void findPolygons(Row* rows, std::size_t count, const std::uint32_t* halves) {
+    for (std::size_t k = 0; k < count; ++k) {
+        Row& row = rows[k];
+        std::uint32_t half[kSize];
+        for (int lane = 0; lane < kSize; ++lane) half[lane] = row.polygon[lane] == kMissing ? 0 : row.polygon[lane] / 2;
+        if (halves != nullptr)
+            for (int lane = 0; lane < kSize; ++lane) half[lane] = halves[half[lane]];
+        for (int lane = 0; lane < kSize; ++lane) {
+            const bool missing = row.polygon[lane] == kMissing;
+            const bool second = (half[lane] & 1U) != 0;
+            const float u = second ? 1.0F - row.u[lane] : row.u[lane];
+            const float v = second ? 1.0F - row.v[lane] : row.v[lane];
+            row.u[lane] = missing ? 0.0F : u;
+            row.v[lane] = missing ? 0.0F : v;
+            row.front[lane] = row.polygon[lane] & 1U;
+            row.polygon[lane] = missing ? kNone : half[lane] / 2;
+        }
+    }
+}
+
+/// Whether each line has two crossings in sequence that are closer than `tolerance` (metres). Returns whether one has.
+LAMBERT_VECTOR_CLONES
+bool findClose(const LinePacket& packet, const Row* rows, std::size_t count, float tolerance,
+               std::uint32_t (&close)[kSize]) {
+    float nearest[kSize];
+    std::fill_n(nearest, kSize, std::numeric_limits<float>::max());
+    for (std::size_t k = 1; k < count; ++k)
+        for (int lane = 0; lane < kSize; ++lane) {
+            const float distance = rows[k].polygon[lane] == kNone ? std::numeric_limits<float>::max()
+                                                                  : rows[k].distance[lane] - rows[k - 1].distance[lane];
+            nearest[lane] = distance < nearest[lane] ? distance : nearest[lane];
+        }
+    std::uint32_t any = 0;
+    for (int lane = 0; lane < kSize; ++lane) {
+        const float x = packet.directionX[lane];
+        const float y = packet.directionY[lane];
+        const float z = packet.directionZ[lane];
+        close[lane] = nearest[lane] <= tolerance / std::sqrt(x * x + y * y + z * z) ? 1 : 0;
+        any |= close[lane];
+    }
+    return any != 0;
 }
 
 LAMBERT_VECTOR_CLONES
@@ -60,6 +169,10 @@ void load(const LinePacket& packet, float scale, RTCRay16& rays) {
         rays.dir_z[lane] = scale * packet.directionZ[lane];
     }
     beginRays(rays, 1.0F);
+}
+
+Crossing crossingIn(const Row& row, int lane) {
+    return {row.distance[lane], row.u[lane], row.v[lane], row.polygon[lane], row.front[lane] != 0};
 }
 
 /// A line in double precision, for crossings that float cannot order.
@@ -116,9 +229,9 @@ bool missBoth(const Scene& scene, const ExactCrossing& first, const ExactCrossin
 }
 
 /// Orders crossings [first, last), of which each is closer to the next than coordinates can tell. Returns the new end.
-std::vector<Crossing>::iterator settle(const Scene& scene, const ExactLine& line, double tolerance,
-                                       std::vector<Crossing>::iterator first, std::vector<Crossing>::iterator last) {
-    std::vector<ExactCrossing> order;
+Crossings::iterator settle(const Scene& scene, const ExactLine& line, double tolerance, Crossings::iterator first,
+                           Crossings::iterator last) {
+    boost::container::small_vector<ExactCrossing, 4> order;
     for (auto it = first; it != last; ++it) {
         const ExactCrossing next(scene, line, *it);
         // An edge within the polygon, between the two triangles of a quad.
@@ -143,8 +256,7 @@ std::vector<Crossing>::iterator settle(const Scene& scene, const ExactLine& line
 }
 
 /// Settles all runs of crossings that are closer than `tolerance`, in lengths of the direction.
-void settleAll(const Scene& scene, const LinePacket& packet, int lane, float tolerance,
-               std::vector<Crossing>& crossings) {
+void settleAll(const Scene& scene, const LinePacket& packet, int lane, float tolerance, Crossings& crossings) {
     auto end = crossings.begin();
     for (auto first = crossings.begin(); first != crossings.end();) {
         auto last = first + 1;
@@ -156,23 +268,6 @@ void settleAll(const Scene& scene, const LinePacket& packet, int lane, float tol
         first = last;
     }
     crossings.erase(end, crossings.end());
-}
-
-/// Puts the crossings of a line into order and drops what counts twice; there are at least two. `tolerance` in lengths of the
-/// direction.
-void sortCrossings(const Scene& scene, const LinePacket& packet, int lane, float tolerance,
-                   std::vector<Crossing>& crossings) {
-    const auto nearer = [](const Crossing& a, const Crossing& b) {
-        return a.distance != b.distance ? a.distance < b.distance : a.polygon < b.polygon;
-    };
-    if (crossings.size() > 2)
-        std::sort(crossings.begin(), crossings.end(), nearer);
-    else if (nearer(crossings[1], crossings[0]))
-        std::swap(crossings[0], crossings[1]);
-    bool anyClose = false;
-    for (std::size_t k = 1; k < crossings.size(); ++k)
-        anyClose |= crossings[k].distance - crossings[k - 1].distance <= tolerance;
-    if (anyClose) settleAll(scene, packet, lane, tolerance, crossings);
 }
 
 } // namespace
@@ -188,15 +283,40 @@ struct LineCaster::Impl {
     Bounds bounds;
     float tolerance; ///< metres
     EmbreeScene embree;
+
+    /// Settles the crossings of a line that lie too close together.
+    void settleLine(const LinePacket& packet, int lane, LineCrossings& crossings) const {
+        const float length =
+            glm::length(glm::vec3(packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]));
+        Crossings list;
+        for (const Row& row : crossings.rows().first(crossings.count(lane))) list.push_back(crossingIn(row, lane));
+        settleAll(scene, packet, lane, tolerance / length, list);
+        crossings.count_[lane] = static_cast<std::uint32_t>(list.size());
+        for (std::size_t k = 0; k < crossings.used_; ++k) {
+            Row& row = crossings.rows_[k];
+            row.polygon[lane] = k < list.size() ? list[k].polygon : kNone;
+            if (k >= list.size()) continue;
+            row.distance[lane] = list[k].distance;
+            row.u[lane] = list[k].u;
+            row.v[lane] = list[k].v;
+            row.front[lane] = list[k].front ? 1 : 0;
+        }
+    }
 };
 
 LineCaster::LineCaster(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 LineCaster::~LineCaster() = default;
 LineCaster::LineCaster(LineCaster&&) noexcept = default;
 
+std::vector<Crossing> LineCrossings::of(int lane) const {
+    std::vector<Crossing> result;
+    for (const Row& row : rows().first(count(lane))) result.push_back(crossingIn(row, lane));
+    return result;
+}
+
 void LineCaster::cross(const LinePacket& packet, LineCrossings& crossings) const {
-    for (std::vector<Crossing>& list : crossings.of_) list.clear();
-    Query query{.context = {}, .crossings = &crossings.of_};
+    std::fill_n(crossings.count_, kSize, 0);
+    Query query{.context = {}, .rows = &crossings.rows_, .count = crossings.count_};
     // Not as coherent rays: Embree's kernel for these reports some hits several times.
     rtcInitIntersectContext(&query.context);
     alignas(64) RTCRay16 rays;
@@ -204,13 +324,14 @@ void LineCaster::cross(const LinePacket& packet, LineCrossings& crossings) const
     // A shadow ray: all of whose hits are rejected needs no order, and finds all of them.
     rtcOccluded16(packet.active, impl_->embree.handle(), &query.context, &rays);
     if (query.outOfMemory) throw std::bad_alloc();
-    for (int lane = 0; lane < LinePacket::kSize; ++lane) {
-        std::vector<Crossing>& list = crossings.of_[static_cast<std::size_t>(lane)];
-        if (list.size() < 2) continue;
-        const float length =
-            glm::length(glm::vec3(packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]));
-        sortCrossings(impl_->scene, packet, lane, impl_->tolerance / length, list);
-    }
+    crossings.used_ = *std::max_element(crossings.count_, crossings.count_ + kSize);
+    Row* rows = crossings.rows_.data();
+    sortRows(rows, crossings.used_, crossings.count_);
+    findPolygons(rows, crossings.used_, impl_->embree.triangles().halves);
+    std::uint32_t close[kSize];
+    if (!findClose(packet, rows, crossings.used_, impl_->tolerance, close)) return;
+    for (int lane = 0; lane < kSize; ++lane)
+        if (close[lane] != 0) impl_->settleLine(packet, lane, crossings);
 }
 
 const Scene& LineCaster::scene() const { return impl_->scene; }

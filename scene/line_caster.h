@@ -2,7 +2,6 @@
 
 #include "scene/scene.h"
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -29,11 +28,24 @@ struct alignas(64) LinePacket {
 /// All that the lines of a packet cross, in order. One per thread, reused from packet to packet.
 class LineCrossings {
 public:
-    std::span<const Crossing> operator[](int lane) const { return of_[static_cast<std::size_t>(lane)]; }
+    /// The k-th crossings of all lines, as in Crossing. Where a line has fewer, `polygon` is kNone.
+    struct alignas(64) Row {
+        float distance[LinePacket::kSize];
+        float u[LinePacket::kSize], v[LinePacket::kSize];
+        std::uint32_t polygon[LinePacket::kSize];
+        std::uint32_t front[LinePacket::kSize]; //!< 1 for true
+    };
+    std::span<const Row> rows() const { return {rows_.data(), used_}; }
+    /// How many a line has.
+    std::uint32_t count(int lane) const { return count_[lane]; }
+    /// Those of one line.
+    std::vector<Crossing> of(int lane) const;
 
 private:
     friend class LineCaster;
-    std::array<std::vector<Crossing>, LinePacket::kSize> of_;
+    std::vector<Row> rows_;
+    std::size_t used_ = 0;
+    alignas(64) std::uint32_t count_[LinePacket::kSize] = {};
 };
 
 /// Finds all source polygons that lines cross, in one traversal each. Thread-safe. Holes are crossed by nothing (see

@@ -38,15 +38,16 @@ void store(const RTCRayHit16& rays, RayPacket& packet) {
     }
 }
 
-/// `halves` as in PolygonSet, or null for the numbers themselves.
+/// Geometry 1 begins with the triangle `first1`. `halves` as in TriangleTable.
 LAMBERT_VECTOR_CLONES
-void storePolygons(const RTCRayHit16& rays, const std::uint32_t* halves, RayPacket& packet) {
+void storePolygons(const RTCRayHit16& rays, const std::uint32_t* halves, std::uint32_t first1, RayPacket& packet) {
     std::uint32_t half[RayPacket::kSize];
-    if (halves == nullptr)
-        std::copy_n(rays.hit.primID, RayPacket::kSize, half);
-    else
-        for (int lane = 0; lane < RayPacket::kSize; ++lane)
-            half[lane] = halves[rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? rays.hit.primID[lane] : 0];
+    for (int lane = 0; lane < RayPacket::kSize; ++lane)
+        half[lane] = rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID
+                         ? 0
+                         : rays.hit.primID[lane] + (rays.hit.geomID[lane] == 1 ? first1 : 0);
+    if (halves != nullptr)
+        for (int lane = 0; lane < RayPacket::kSize; ++lane) half[lane] = halves[half[lane]];
     for (int lane = 0; lane < RayPacket::kSize; ++lane) {
         const bool second = (half[lane] & 1U) != 0;
         packet.u[lane] = second ? 1.0F - rays.hit.u[lane] : rays.hit.u[lane];
@@ -118,18 +119,6 @@ struct RayCaster::Impl {
     bool anyOccluders;
     EmbreeScene embree;
 
-    void storePolygonsAndHoles(const RTCRayHit16& rays, RayPacket& packet) const {
-        for (int lane = 0; lane < RayPacket::kSize; ++lane) {
-            packet.polygon[lane] = kNone;
-            if (rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-            const PolygonHit hit =
-                embree.polygons(rays.hit.geomID[lane]).hit(rays.hit.primID[lane], rays.hit.u[lane], rays.hit.v[lane]);
-            packet.polygon[lane] = hit.polygon;
-            packet.u[lane] = hit.u;
-            packet.v[lane] = hit.v;
-        }
-    }
-
     /// `rays` hold the origins, `packet` the directions.
     void trace(RTCRayHit16& rays, RayPacket& packet, Coherence coherence) const {
         RTCIntersectContext context;
@@ -139,10 +128,7 @@ struct RayCaster::Impl {
         loadDirections(packet, rays);
         rtcIntersect16(packet.active, embree.handle(), &context, &rays);
         store(rays, packet);
-        if (const PolygonSet* polygons = embree.onlyPolygons())
-            storePolygons(rays, polygons->halves.empty() ? nullptr : polygons->halves.data(), packet);
-        else
-            storePolygonsAndHoles(rays, packet);
+        storePolygons(rays, embree.triangles().halves, embree.firstTriangle(1), packet);
         if (anyOccluders) turnOccluders(scene, packet);
     }
 };
@@ -171,7 +157,8 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
     rtcIntersect1(impl_->embree.handle(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-    const PolygonHit hit = impl_->embree.polygons(query.hit.geomID).hit(query.hit.primID, query.hit.u, query.hit.v);
+    const PolygonHit hit = impl_->embree.triangles().hit(
+        impl_->embree.firstTriangle(query.hit.geomID) + query.hit.primID, query.hit.u, query.hit.v);
     const bool front =
         glm::dot(ray.direction, normal) < 0.0F && !isOccluder(impl_->scene, impl_->scene.polygons[hit.polygon]);
     return Hit{hit.polygon, hit.u, hit.v, query.ray.tfar / impl_->embree.scale(), front};

@@ -47,9 +47,10 @@ std::vector<Crossing> crossingsOf(const LineCaster& caster, const Line& line) {
     LineCrossings crossings;
     caster.cross(packet, crossings);
     for (int lane = 1; lane < LinePacket::kSize; ++lane) {
-        EXPECT_EQ(crossings[lane].size(), lane % 2 == 0 ? crossings[0].size() : 0U);
+        EXPECT_EQ(crossings.count(lane), lane % 2 == 0 ? crossings.count(0) : 0U);
+        EXPECT_EQ(crossings.of(lane).size(), crossings.count(lane));
     }
-    return {crossings[0].begin(), crossings[0].end()};
+    return crossings.of(0);
 }
 
 /// The same from hit to hit, each time from a little farther on.
