@@ -6,6 +6,7 @@ can say.) Python's standard library only. Lengths are metres, y is up where ther
 Faces are counter-clockwise seen from their front, which is the side that reflects and emits:
 rooms face inwards, objects face outwards and are closed.
 """
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -391,12 +392,33 @@ def cove_room():
                  Camera((3.8, 1.5, 2.7), (.6, 1.4, 1.2), math.radians(65), 1.333333))
 
 
+def block_of_rooms():
+    """A house: closed rooms beside and above each other, a lamp in each."""
+    size, wall, lamp, drop = (4, 2.6, 4), .2, 1.2, .05
+    names = {"y0": "floor", "y1": "ceiling"}
+    faces = []
+    for room in itertools.product(range(3), repeat=3):
+        low = [k * (extent + wall) for k, extent in zip(room, size)]
+        high = [a + extent for a, extent in zip(low, size)]
+        faces += box(low, high, lambda side: names.get(side, "wall"), inward=True)
+        (x0, x1), (z0, z1) = ([(a + b + sign * lamp) / 2 for sign in (-1, 1)] for a, b in ((low[0], high[0]), (low[2], high[2])))
+        for material, up in (("lamp", False), ("ceiling", True)):
+            faces.append(rectangle(1, high[1] - drop, (x0, z0), (x1, z1), material, up))
+    materials = {"wall": Material((.7, .7, .7)), "floor": Material((.42, .42, .42)), "ceiling": Material((.8, .8, .8)),
+                 "lamp": Material((.5, .5, .5), (10, 10, 10))}
+    return Scene("block_of_rooms",
+                 ["Metres. 27 closed rooms of 4 x 2.6 x 4 m, three each way, with walls of 20 cm between them; in each a lamp of",
+                  "1.2 x 1.2 m, 5 cm below the ceiling. A line through the house passes several rooms."],
+                 materials, {"rooms": [faces]}, [Node("rooms", "rooms")],
+                 Camera((.3, 1.6, .3), (3, 1, 3), math.radians(75), 1.333333))
+
+
 def scenes():
     """Every scene, with the file formats it is written in."""
     both = ("gltf", "obj")
     return [(cornell_box(), (*both, "mgf")), (furnace_box(), (*both, "ply", "stl")), (table_room(), (*both, "mgf")),
             (textured_room(), both), (window_room(), ("gltf",)), (corridor(), ("gltf",)),
-            (cove_room(), ("gltf",)),
+            (cove_room(), ("gltf",)), (block_of_rooms(), ("obj",)),
             *((case, ("obj", "mgf") if case.name == "cube6" else ("obj",)) for case in analytic_cases())]
 
 

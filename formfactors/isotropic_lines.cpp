@@ -17,15 +17,17 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kChordsPerBlock = 1U << 16;
-constexpr std::uint32_t kMostPerBundle = 1U << 20;
+constexpr std::uint32_t kMostPerBlock = 1U << 20;
 constexpr std::size_t kSize = LinePacket::kSize;
 
 SamplePoints linePoints(const GlobalLineOptions& options) {
     if (options.lines < 1) throw UsageError("global lines: found 0 lines, allowed are 1 to 2^32 - 1");
-    if (options.linesPerBundle < 1 || options.linesPerBundle > kMostPerBundle)
+    if (options.linesPerBundle < 1 || options.linesPerBundle > kMostPerBlock)
         throw UsageError(
-            fmt::format("lines per bundle: found {}, allowed are 1 to {}", options.linesPerBundle, kMostPerBundle));
+            fmt::format("lines per bundle: found {}, allowed are 1 to {}", options.linesPerBundle, kMostPerBlock));
+    if (options.chordsPerBlock < 1 || options.chordsPerBlock > kMostPerBlock)
+        throw UsageError(
+            fmt::format("chords per block: found {}, allowed are 1 to {}", options.chordsPerBlock, kMostPerBlock));
     if (options.set == LineSet::Chords) return {options.sampler, options.lines, 4, options.seed};
     return {options.sampler, (options.lines - 1) / options.linesPerBundle + 1, 2, options.seed};
 }
@@ -117,7 +119,7 @@ IsotropicLines::IsotropicLines(const Bounds& bounds, const GlobalLineOptions& op
       points_(linePoints(options)) {}
 
 std::uint32_t IsotropicLines::linesPerBlock() const {
-    return options_.set == LineSet::Chords ? kChordsPerBlock : options_.linesPerBundle;
+    return options_.set == LineSet::Chords ? options_.chordsPerBlock : options_.linesPerBundle;
 }
 
 std::uint64_t IsotropicLines::blockCount() const { return (options_.lines - 1) / linesPerBlock() + std::uint64_t{1}; }

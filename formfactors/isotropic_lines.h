@@ -19,10 +19,11 @@ enum class LineSet {
 };
 
 struct GlobalLineOptions {
-    std::uint32_t lines = 1'000'000;     //!< in all, 1 to 2^32 - 1; one in 2πR²/A crosses a patch of area A
-    LineSet set = LineSet::Chords;       //!< bundles are faster to trace, chords are spread better
-    std::uint32_t linesPerBundle = 1024; //!< parallel lines per direction, 1 to 2^20; of bundles
-    Sampler sampler = Sampler::Sobol;    //!< of the sphere's points, or of directions and of the points within a bundle
+    std::uint32_t lines = 1'000'000;      //!< in all, 1 to 2^32 - 1; one in 2πR²/A crosses a patch of area A
+    LineSet set = LineSet::Chords;        //!< bundles are faster to trace, chords are spread better
+    std::uint32_t linesPerBundle = 1024;  //!< parallel lines per direction, 1 to 2^20; of bundles
+    std::uint32_t chordsPerBlock = 65536; //!< that are put into order together, 1 to 2^20: more are faster to trace
+    Sampler sampler = Sampler::Sobol; //!< of the sphere's points, or of directions and of the points within a bundle
     std::uint64_t seed = 1;
 };
 

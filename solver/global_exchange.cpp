@@ -4,11 +4,18 @@
 #include "solver/ordered_sum.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace lambert {
+
+namespace {
+
+constexpr double kBlocks = 16; ///< at least, in which threads share an exchange by chords
+
+} // namespace
 
 struct GlobalExchange::Scratch {
     IsotropicLines::Block block;
@@ -24,8 +31,9 @@ GlobalExchange::GlobalExchange(const PatchMesh& mesh, const LineCaster& caster, 
     options_.sampler = sampler;
 }
 
-void GlobalExchange::restart(std::uint64_t seed) {
+void GlobalExchange::restart(std::uint64_t seed, double lines) {
     options_.seed = seed;
+    options_.chordsPerBlock = std::bit_floor(static_cast<std::uint32_t>(std::clamp(lines / kBlocks, 1024.0, 65536.0)));
     lines_.emplace(bounds_, options_);
     nextBlock_ = 0;
 }
@@ -58,13 +66,17 @@ double GlobalExchange::linesFor(double wanted) const {
     return static_cast<double>(blocksFor(wanted) * lines_->linesPerBlock());
 }
 
+double GlobalExchange::measure() const {
+    const double radius = static_cast<double>(lines_->radius());
+    return 2.0 * std::numbers::pi * radius * radius;
+}
+
 void GlobalExchange::exchange(const ExchangeInput& input, double lines, FixedPointSums& received, Losses& losses,
                               LineCounts& counts, Progress& progress) {
     const std::uint64_t blocks = blocksFor(lines);
     if (blocks == 0) return;
     const std::uint64_t count = blocks * lines_->linesPerBlock();
-    const double radius = static_cast<double>(lines_->radius());
-    const double measure = 2.0 * std::numbers::pi * radius * radius;
+    const double measure = this->measure();
     const double weight = measure / static_cast<double>(count);
 
     // A line meets a patch's front at most once, so that the magnitudes of a sum come to at most 2πR² times the largest excess.

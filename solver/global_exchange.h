@@ -18,11 +18,13 @@ public:
     /// `mesh` and `caster` (of the same scene) must outlive it.
     GlobalExchange(const PatchMesh& mesh, const LineCaster& caster, LineSet set, Sampler sampler);
 
-    /// Starts a sequence of lines.
-    void restart(std::uint64_t seed);
-    /// How many lines exchange() will take: whole blocks of 4096 chords or bundles of 1024, at least one; none once the sequence has
-    /// ended, after 2^32.
+    /// Starts a sequence of lines, of which about `lines` will be wanted.
+    void restart(std::uint64_t seed, double lines);
+    /// How many lines exchange() will take: whole blocks of 1024 chords or more, if more are wanted, or bundles of 1024; at least one;
+    /// none once the sequence has ended, after 2^32.
     double linesFor(double wanted) const;
+    /// 2πR²: a patch of area A is crossed by A / 2πR² of the lines.
+    double measure() const;
     /// Uses the sequence's next linesFor(lines) lines. The rest as LocalExchange::exchange; densities do not count.
     void exchange(const ExchangeInput& input, double lines, FixedPointSums& received, Losses& losses,
                   LineCounts& counts, Progress& progress);

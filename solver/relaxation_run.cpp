@@ -6,7 +6,9 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lambert {
@@ -16,7 +18,11 @@ namespace {
 constexpr int kMostBounces = 10'000;
 constexpr std::size_t kMedianSample = 4096;       ///< patches, about
 constexpr double kLeastShare = 0.1;               ///< of either kind of lines, where both are used
-constexpr double kLinesPerIteration = 2 * 4096.0; ///< global lines at least, or there are fewer iterations
+constexpr double kLinesPerIteration = 2 * 1024.0; ///< global lines at least, or there are fewer iterations
+/// Of local lines, over that of independent ones: low-discrepancy sequences lessen it more than that of global lines. Measured
+/// on rooms; half or twice as much costs some percent.
+constexpr double kLocalError = 0.7;
+constexpr std::size_t kCaps = 32; ///< that are tried, each √2 above the next
 
 /// Of sequences of lines. Every bounce of the shooting has its own, and so have regular iterations: a patch that one bounce found too
 /// bright would with a sequence that goes on send fewer lines to where it had sent too many, and so lose some of its light, 1e-4 for
@@ -78,7 +84,7 @@ void RelaxationRun::run(std::uint64_t rays, std::uint64_t seed, Progress& progre
     input_.seed = sequenceSeed(seed, kRegular, 0);
     while (stage_.iterations < iterations) {
         if (stage_.iterations == 0) local_.restart();
-        if (global_) global_->restart(sequenceSeed(seed, kGlobal, stage_.iterations));
+        if (global_) global_->restart(sequenceSeed(seed, kGlobal, stage_.iterations), rest / iterations);
         global_ ? gatherGlobally(rest / iterations, progress) : gatherLocally(rest / iterations, progress);
         ++stage_.iterations;
         afterIteration();
@@ -161,31 +167,77 @@ void RelaxationRun::gatherLocally(double rays, Progress& progress) {
     });
 }
 
-/// E = E_0 + F B_e + F ρ E: what lamps send by local lines, as global ones hardly meet small lamps; the rest by global lines.
-void RelaxationRun::gatherGlobally(double lines, Progress& progress) {
-    const auto emission = [&](std::size_t i) { return mesh_.emittedRadiosity[i]; };
-    const double emitted =
-        orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(emission(i))); });
-    const double all =
-        orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(radiosity(i))); });
-    const double localShare = emitted > 0.0 ? std::clamp(emitted / all, kLeastShare, 1.0 - kLeastShare) : 0.0;
+/// Where to divide B between global lines, which send what is below the cap, and local ones. The lines of either kind err by a variance
+/// over their number: 2πR² Σ A (b − β)² of global lines, b = min(B, cap), since each brings (b − β) 2πR² to where it ends; and
+/// (Σ A (B − b))² of local ones, which go by power. Shared in proportion to the roots, the variance is their sum squared.
+/// Sums of channels stand for B, its mean for β.
+RelaxationRun::Division RelaxationRun::divide() const {
+    struct Sums {
+        std::array<double, kCaps> below{}, squares{}, above{}; ///< Σ A b, Σ A b², Σ A (B − b), by cap
+        Sums& operator+=(const Sums& other) {
+            for (std::size_t k = 0; k < kCaps; ++k) {
+                below[k] += other.below[k];
+                squares[k] += other.squares[k];
+                above[k] += other.above[k];
+            }
+            return *this;
+        }
+    };
+    const std::size_t count = mesh_.size();
+    const double most =
+        orderedSum(count, Maximum{}, [&](std::size_t i) { return Maximum{sum(RgbSum(radiosity(i)))}; }).value;
+    std::array<double, kCaps> caps{};
+    for (std::size_t k = 0; k < kCaps; ++k) caps[k] = most * std::pow(0.5, 0.5 * static_cast<double>(k));
+    const Sums sums = orderedSum(count, Sums{}, [&](std::size_t i) {
+        const double b = sum(RgbSum(radiosity(i)));
+        Sums term;
+        for (std::size_t k = 0; k < kCaps; ++k) {
+            const double capped = std::min(b, caps[k]);
+            term.below[k] = area(i) * capped;
+            term.squares[k] = area(i) * capped * capped;
+            term.above[k] = area(i) * (b - capped);
+        }
+        return term;
+    });
+    Division best;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t k = 0; k < kCaps; ++k) {
+        const double mean = options_.controlVariate ? sums.below[k] / area_ : 0.0;
+        const double global = std::sqrt(global_->measure() * std::max(sums.squares[k] - mean * sums.below[k], 0.0));
+        const double local = kLocalError * sums.above[k];
+        if (global + local >= least) continue;
+        least = global + local;
+        best.cap = caps[k];
+        best.localShare = local > 0.0 ? std::clamp(local / least, kLeastShare, 1.0 - kLeastShare) : 0.0;
+    }
+    return best;
+}
 
-    const Rgb control = options_.controlVariate ? median([&](std::size_t i) { return reflected(i); }) : Rgb(0.0F);
+/// E = E_0 + F B: what is brightest, as lamps are, by local lines, as global ones hardly meet what is small; the rest by global lines.
+void RelaxationRun::gatherGlobally(double lines, Progress& progress) {
+    const Division division = divide();
+    const auto below = [&](std::size_t i) { // what of B goes by global lines
+        const Rgb b = radiosity(i);
+        const double all = sum(RgbSum(b));
+        return all > division.cap ? static_cast<float>(division.cap / all) * b : b;
+    };
+    const Rgb control = options_.controlVariate ? median(below) : Rgb(0.0F);
     Losses losses;
     std::uint64_t count = 0;
-    if (emitted > 0.0) {
+    if (division.localShare > 0.0) {
         input_.control = Rgb(0.0F);
-        forPatches(mesh_.size(), [&](std::size_t i) { sender_[i].excess = emission(i); });
-        setDensities(localShare * lines, 0.0, [&](std::size_t i) { return sumOfMagnitudes(sender_[i].excess); });
+        forPatches(mesh_.size(), [&](std::size_t i) { sender_[i].excess = radiosity(i) - below(i); });
+        setDensities(division.localShare * lines, 0.0,
+                     [&](std::size_t i) { return sumOfMagnitudes(sender_[i].excess); });
         count = exchangeLocally(losses, progress);
     }
-    // What the mean is to hold of this iteration in the end, of which the lamps' part can be added now.
-    const double blockLines = global_->linesFor((1.0 - localShare) * lines);
+    // What the mean is to hold of this iteration in the end, of which the local lines' part can be added now.
+    const double blockLines = global_->linesFor((1.0 - division.localShare) * lines);
     rays_ += count + static_cast<std::uint64_t>(blockLines);
     const double rays = static_cast<double>(count) + blockLines;
     const auto share = static_cast<float>(rays / static_cast<double>(rays_));
     forPatches(mesh_.size(), [&](std::size_t i) {
-        sender_[i].excess = reflected(i) - control;
+        sender_[i].excess = below(i) - control; // before the mean changes, which it depends on
         const Rgb found = direct(i) + control + Rgb(received_.take(i) / area(i));
         light_[i] += share * (found - light_[i]);
     });

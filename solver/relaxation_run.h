@@ -52,6 +52,12 @@ private:
         std::uint64_t shotRays = 0;  ///< of the shooting
     };
 
+    /// Of B, between global lines and local ones.
+    struct Division {
+        double cap = 0.0;        ///< of the sum of B's channels; what is above goes by local lines
+        double localShare = 0.0; ///< of the lines
+    };
+
     double area(std::size_t i) const { return problem_.area(i); }
     Rgb direct(std::size_t i) const { return Rgb(problem_.direct(i)); }
     Rgb source(std::size_t i) const { return Rgb(problem_.source(i)); }
@@ -67,6 +73,7 @@ private:
     template <typename Magnitude>
     void setDensities(double rays, double spread, Magnitude&& magnitude);
     void includeInMean(double rays, const Losses& losses);
+    Division divide() const;
     template <typename Value>
     Rgb median(Value&& value) const;
 
