@@ -1,7 +1,8 @@
 /// Global lines against bare Embree that finds all hits of the same lines in the same order, with a filter that notes and
 /// rejects them; in turns, on one thread.
 ///
-/// `ratio_as_drawn` is that to the same without the order: of 16 lines at a time as their points are drawn.
+/// `ratio_as_drawn` is that to the same without the order, 16 lines at a time as their points are drawn, and `ratio_singly` that to
+/// these one by one (rtcOccluded1).
 ///
 /// "Bare" traces all lines; what share of its time those take that meet the scene's box, which global lines restrict themselves
 /// to, is `bare_meeting`. It gets its lines from memory and forgets the hits of a packet with the next; global lines are also made, put into
@@ -61,6 +62,26 @@ std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
     return hits;
 }
 
+void traceSingly(RTCScene scene, const std::vector<LinePacket>& packets) {
+    HitList list;
+    rtcInitIntersectContext(&list.context);
+    for (const LinePacket& packet : packets) {
+        for (unsigned lane = 0; lane < 16; ++lane) {
+            RTCRay ray{};
+            ray.org_x = packet.originX[lane];
+            ray.org_y = packet.originY[lane];
+            ray.org_z = packet.originZ[lane];
+            ray.dir_x = packet.directionX[lane];
+            ray.dir_y = packet.directionY[lane];
+            ray.dir_z = packet.directionZ[lane];
+            ray.tfar = 1.0F;
+            ray.mask = ~0U;
+            rtcOccluded1(scene, &list.context, &ray);
+            list.crossings[0].clear();
+        }
+    }
+}
+
 void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, LineSet set) {
     const BareEmbree bare(scene.scene, noteHit);
     const LineCaster caster(scene.scene);
@@ -71,6 +92,7 @@ void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, Li
     double allSeconds = 0.0;
     double meetingSeconds = 0.0;
     double drawnSeconds = 0.0;
+    double singlySeconds = 0.0;
     for (auto _ : state) {
         const GlobalLines lines(scene.mesh, caster, {.lines = kLines, .set = set, .seed = ++seed});
         GlobalLineCounts counts(scene.mesh.size());
@@ -89,6 +111,8 @@ void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, Li
             watch.lap();
             trace(bare.handle(), block.packets);
             drawnSeconds += watch.lap();
+            traceSingly(bare.handle(), block.packets);
+            singlySeconds += watch.lap();
         }
         allSeconds += bareSeconds;
         CpuStopwatch watch;
@@ -98,6 +122,7 @@ void compareGlobalLines(benchmark::State& state, const BenchmarkScene& scene, Li
     comparison.report(state);
     state.counters["bare_meeting"] = meetingSeconds / allSeconds;
     state.counters["ratio_as_drawn"] = state.counters["ratio"] * drawnSeconds / allSeconds;
+    state.counters["ratio_singly"] = state.counters["ratio"] * singlySeconds / allSeconds;
     state.counters["hits/line"] = static_cast<double>(hits) / (static_cast<double>(kLines) * static_cast<double>(seed));
 }
 

@@ -29,7 +29,7 @@ const Quality& qualityOf(const std::string& name) {
     return *std::find_if(kQualities.begin(), kQualities.end(), [&](const Quality& q) { return q.name == name; });
 }
 
-void addMeshArguments(CLI::App& command, TransportArguments& a) {
+void addMeshArguments(CLI::App& command, TransportArguments& a, const std::string& patches) {
     command
         .add_option("--quality", a.quality,
                     "preview, normal or high: patches, resolution and tolerance, unless given [normal]")
@@ -40,7 +40,7 @@ void addMeshArguments(CLI::App& command, TransportArguments& a) {
                        ->group("Mesh");
     command
         .add_option("--patches", a.patches,
-                    "About so many patches; 0 keeps the input's polygons [theirs and a quarter or 5000 more]")
+                    fmt::format("About so many patches; 0 keeps the input's polygons [{}]", patches))
         ->type_name("N")
         ->check(between(0.0, 2e8))
         ->excludes(length)

@@ -85,7 +85,9 @@ struct Quality {
 };
 const Quality& qualityOf(const std::string& name);
 
-void addMeshArguments(CLI::App& command, TransportArguments& arguments);
+/// `patches`: what --help says of their number unless given.
+void addMeshArguments(CLI::App& command, TransportArguments& arguments,
+                      const std::string& patches = "theirs and a quarter or 5000 more");
 /// `methods`: allowed with --method.
 void addFormFactorArguments(CLI::App& command, TransportArguments& arguments,
                             const std::vector<std::string>& methods = methodNames());

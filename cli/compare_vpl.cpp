@@ -258,7 +258,7 @@ void addCompareVpl(CLI::App& compare, CommandRun& run) {
         ->group("Method");
     command.add_flag("--compensate", a.compensate, "Recovers what the bound takes away (Kollig, Keller 2004)")
         ->group("Method");
-    addMeshArguments(command, a.transport);
+    addMeshArguments(command, a.transport, "theirs and a twentieth or 1000 more");
     addCameraArguments(command, a.picture);
     addRunArguments(command, a.run);
     command.callback([arguments, &run] { run = [arguments] { return compareVpl(*arguments); }; });

@@ -84,8 +84,14 @@ void RelaxationRun::run(std::uint64_t rays, std::uint64_t seed, Progress& progre
     input_.seed = sequenceSeed(seed, kRegular, 0);
     while (stage_.iterations < iterations) {
         if (stage_.iterations == 0) local_.restart();
-        if (global_) global_->restart(sequenceSeed(seed, kGlobal, stage_.iterations), rest / iterations);
-        global_ ? gatherGlobally(rest / iterations, progress) : gatherLocally(rest / iterations, progress);
+        if (global_) { // whose lines come in blocks, so that what one iteration took too many the next ones take less
+            const double left = std::max(1.0, static_cast<double>(rays) - static_cast<double>(rays_));
+            const double lines = left / (iterations - stage_.iterations);
+            global_->restart(sequenceSeed(seed, kGlobal, stage_.iterations), lines);
+            gatherGlobally(lines, progress);
+        } else {
+            gatherLocally(rest / iterations, progress);
+        }
         ++stage_.iterations;
         afterIteration();
     }

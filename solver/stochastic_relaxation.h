@@ -15,7 +15,7 @@ namespace lambert {
 /// By which lines light goes from patch to patch in regular iterations; shooting goes by local ones.
 enum class RelaxationLines {
     Local, ///< from patches, by their power
-    Global ///< through the whole scene, see GlobalExchange; what lamps send still goes by local lines
+    Global ///< through the whole scene, see GlobalExchange; what is brightest, as lamps are, still goes by local lines
 };
 
 struct StochasticRelaxationOptions {

@@ -370,6 +370,8 @@ TEST(GlobalLines, RefuseOptionsOutOfRange) {
     EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.lines = 0}), UsageError);
     EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.set = LineSet::Bundles, .linesPerBundle = 0}), UsageError);
     EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.set = LineSet::Bundles, .linesPerBundle = 1U << 21}), UsageError);
+    EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.chordsPerBlock = 0}), UsageError);
+    EXPECT_THROW(GlobalLines(c.mesh, c.caster, {.chordsPerBlock = 1U << 21}), UsageError);
 }
 
 } // namespace

@@ -100,6 +100,26 @@ TEST_P(PatchLookupOf, Answers16AtOnceAsOneByOne) {
     }
 }
 
+TEST_P(PatchLookupOf, AnswersManyAsOneByOne) {
+    SCOPED_TRACE("seed 3");
+    std::mt19937 random(3);
+    const auto count = static_cast<std::uint32_t>(scene().polygons.size());
+    for (const PatchMesh& mesh : meshes()) {
+        std::vector<std::uint32_t> polygon(1001), patch(polygon.size());
+        std::vector<float> u(polygon.size()), v(polygon.size());
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            polygon[k] = static_cast<std::uint32_t>(random()) % count;
+            const ChartPoint p = randomChartPoint(scene().polygons[polygon[k]], random);
+            u[k] = p.u;
+            v[k] = p.v;
+        }
+        mesh.lookup.patchesAt(polygon, u, v, patch);
+        for (std::size_t k = 0; k < polygon.size(); ++k)
+            ASSERT_EQ(patch[k], mesh.lookup.patchAt(polygon[k], u[k], v[k]))
+                << "polygon " << polygon[k] << " at " << u[k] << ", " << v[k];
+    }
+}
+
 TEST_P(PatchLookupOf, StaysWithinThePolygonOnItsBorderAndALittleOutside) {
     const float charts[]{-1e-6F, 0.0F, 1e-6F, 0.25F, 0.5F, 1.0F - 1e-6F, 1.0F, 1.0F + 1e-6F};
     for (const PatchMesh& mesh : meshes()) {

@@ -305,5 +305,19 @@ TEST(StochasticRelaxation, RefusesWhatMakesNoSense) {
     EXPECT_THROW(solveStochasticRelaxation(SolverProblem(dark), c.rays, {}, progress), InputError);
 }
 
+TEST(StochasticRelaxation, SpendsAboutTheRaysItIsGiven) {
+    const StochasticCase c(closedCube(), 54);
+    for (const double rays : {1e5, 4e5}) {
+        const auto spent = [&](StochasticRelaxationOptions options) {
+            options.rays = static_cast<std::uint64_t>(rays);
+            return static_cast<double>(solve(c, options).rays);
+        };
+        EXPECT_NEAR(spent({}), rays, 0.01 * rays);
+        // Global lines come in blocks of 1024, of which half a one may be too many in each of 8 sub-runs.
+        for (const LineSet set : {LineSet::Chords, LineSet::Bundles})
+            EXPECT_NEAR(spent({.lines = RelaxationLines::Global, .lineSet = set}), rays, 8 * 512 + 0.01 * rays);
+    }
+}
+
 } // namespace
 } // namespace lambert
