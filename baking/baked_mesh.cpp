@@ -11,12 +11,14 @@ Rgb shownRadiance(const BakedMesh& mesh, std::size_t vertex, Quantity quantity) 
 
 bool isEmitter(const BakedMesh& mesh, std::size_t face) { return !mesh.emitters.empty() && mesh.emitters[face]; }
 
+bool isHole(const BakedMesh& mesh, std::size_t face) { return !mesh.opacity.empty() && mesh.opacity[face] == 0.0F; }
+
 BakedMesh withoutHoles(const BakedMesh& mesh) {
     BakedMesh result;
     result.materials = mesh.materials;
     std::vector<std::uint32_t> newIndex(mesh.positions.size(), 0);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-        if (!mesh.opacity.empty() && mesh.opacity[face] == 0.0F) continue;
+        if (isHole(mesh, face)) continue;
         result.faces.push_back(mesh.faces[face]);
         result.faceMaterials.push_back(mesh.faceMaterials[face]);
         result.emitters.push_back(isEmitter(mesh, face));

@@ -37,6 +37,9 @@ Rgb shownRadiance(const BakedMesh& mesh, std::size_t vertex, Quantity quantity);
 /// Whether the face emits light, an emission texture considered.
 bool isEmitter(const BakedMesh& mesh, std::size_t face);
 
+/// Whether nothing of the face is there.
+bool isHole(const BakedMesh& mesh, std::size_t face);
+
 /// The mesh without faces that are one hole and vertices that only they use; the rest in order.
 BakedMesh withoutHoles(const BakedMesh& mesh);
 

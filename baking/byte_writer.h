@@ -4,20 +4,28 @@
 
 #include <bit>
 #include <cstdint>
+#include <ostream>
 #include <string>
 
 namespace lambert {
 
-/// Appends numbers in little-endian order, whatever the machine's own.
+/// Writes numbers in little-endian order, whatever the machine's own. All are on the stream once it is destroyed.
 class ByteWriter {
 public:
-    explicit ByteWriter(std::string& bytes) : bytes_(&bytes) {}
+    explicit ByteWriter(std::ostream& stream) : stream_(stream) { bytes_.reserve(kAtOnce + 4); }
+    ~ByteWriter() { flush(); }
+    ByteWriter(const ByteWriter&) = delete;
+    ByteWriter& operator=(const ByteWriter&) = delete;
 
-    void put(std::uint8_t value) { bytes_->push_back(static_cast<char>(value)); }
+    void put(std::uint8_t value) {
+        bytes_.push_back(static_cast<char>(value));
+        if (bytes_.size() >= kAtOnce) flush();
+    }
     void put(std::uint32_t value) {
         char little[4];
         for (unsigned k = 0; k < 4; ++k) little[k] = static_cast<char>(value >> (8 * k) & 0xFF);
-        bytes_->append(little, 4);
+        bytes_.append(little, 4);
+        if (bytes_.size() >= kAtOnce) flush();
     }
     /// Negative zero is written as zero, so that equal meshes have equal bytes.
     void put(float value) { put(std::bit_cast<std::uint32_t>(value + 0.0F)); }
@@ -28,7 +36,15 @@ public:
     }
 
 private:
-    std::string* bytes_;
+    static constexpr std::size_t kAtOnce = 65536;
+
+    void flush() {
+        stream_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+        bytes_.clear();
+    }
+
+    std::ostream& stream_;
+    std::string bytes_;
 };
 
 } // namespace lambert

@@ -37,12 +37,10 @@ std::uint8_t srgbByte(float linear) { return static_cast<std::uint8_t>(std::lrou
 
 } // namespace
 
-std::string encodePly(const BakedMesh& mesh, const BakeOutputOptions& options) {
+void encodePly(const BakedMesh& mesh, const BakeOutputOptions& options, std::ostream& stream) {
     const bool withIrradiance = options.quantity == Quantity::Irradiance;
-    std::string bytes = header(mesh, options);
-    const std::size_t vertexSize = withIrradiance ? 51 : 39;
-    bytes.reserve(bytes.size() + mesh.positions.size() * vertexSize + mesh.faces.size() * 17);
-    ByteWriter out(bytes);
+    stream << header(mesh, options);
+    ByteWriter out(stream);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         out.put(mesh.positions[v]);
         out.put(mesh.normals[v]);
@@ -56,7 +54,6 @@ std::string encodePly(const BakedMesh& mesh, const BakeOutputOptions& options) {
         out.put(count);
         for (std::size_t k = 0; k < count; ++k) out.put(mesh.faces[face][k]);
     }
-    return bytes;
 }
 
 } // namespace lambert

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 namespace lambert {
@@ -43,14 +44,16 @@ struct Histogram {
 
 Histogram collect(const BakedMesh& mesh, Quantity quantity, bool withEmitters) {
     Histogram histogram;
+    histogram.lit.reserve(mesh.faces.size());
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         if (!withEmitters && isEmitter(mesh, face)) continue;
         const double area = faceArea(mesh, face);
         histogram.area += area;
         if (const double value = faceValue(mesh, face, quantity); value > 0.0) histogram.lit.push_back({value, area});
     }
-    std::stable_sort(histogram.lit.begin(), histogram.lit.end(),
-                     [](const FaceValue& a, const FaceValue& b) { return a.value < b.value; });
+    std::sort(histogram.lit.begin(), histogram.lit.end(), [](const FaceValue& a, const FaceValue& b) {
+        return std::tie(a.value, a.area) < std::tie(b.value, b.area);
+    });
     return histogram;
 }
 

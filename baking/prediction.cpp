@@ -5,13 +5,16 @@
 #include "core/process.h"
 #include "core/stopwatch.h"
 
+#include <algorithm>
+
 namespace lambert {
 
 namespace {
 
 // Measured on two cores; all but the pilots is a small part of a bake.
 constexpr double kSecondsPerPatch = 5e-6; // of reconstruction
-constexpr double kBytesPerPatch = 1000.0; // solution, reconstruction and the files' bytes
+// Per patch, beside the mesh: solution and iterates, and thereafter solution and reconstruction.
+constexpr double kSolveBytes = 300.0, kLineSolveBytes = 140.0, kBakeBytes = 180.0;
 
 double directRaysPerPatch(const Scene& scene, const DirectLightOptions& options) {
     return static_cast<double>(scene.lights.size()) * options.points +
@@ -26,6 +29,7 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     BakePrediction result;
     result.seconds.mesh = watch.lap();
     result.patches = meshed.mesh.size();
+    const std::uint64_t meshMemory = residentMemoryBytes();
     if (!options.formFactors.file.empty())
         throw UsageError("--dry-run: predicts nothing of a bake from a matrix file (--form-factors)");
     if (options.instantRadiosity)
@@ -38,8 +42,11 @@ BakePrediction predictBake(const Scene& scene, const BakeOptions& options, Progr
     result.seconds.directLight =
         result.secondsPerRay * patches * directRaysPerPatch(*meshed.scene, options.directLight);
     result.seconds.bake = kSecondsPerPatch * patches;
-    result.peakMemory = peakMemoryBytes() + result.matrixBytes + result.lightBytes +
-                        static_cast<std::uint64_t>(kBytesPerPatch * patches);
+    const double iterates = usesLines(options.solver.method) ? kLineSolveBytes : kSolveBytes;
+    const std::uint64_t solveMemory =
+        result.matrixBytes + result.lightBytes + static_cast<std::uint64_t>(iterates * patches);
+    const std::uint64_t bakeMemory = result.lightBytes + static_cast<std::uint64_t>(kBakeBytes * patches);
+    result.peakMemory = std::max(peakMemoryBytes(), meshMemory + std::max(solveMemory, bakeMemory));
     return result;
 }
 

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
 
 namespace lambert {
 
@@ -22,55 +25,96 @@ double angleAt(const PatchMesh& mesh, std::size_t patch, int k) {
     return std::atan2(glm::length(glm::cross(next, previous)), glm::dot(next, previous));
 }
 
+/// Positions and faces; what the half-edges take is free again before light comes to the vertices.
+BakedMesh makeVertices(const PatchMesh& mesh, float creaseAngle, std::size_t* separatedFaces) {
+    BakedMesh baked;
+    std::size_t vertices = 0;
+    {
+        HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, creaseAngle);
+        if (separatedFaces != nullptr) *separatedFaces = halfEdges.separatedFaces;
+        baked.faces = std::move(halfEdges.corners);
+        vertices = halfEdges.topology.n_vertices();
+    }
+    // A separated face may have left vertices that no face has.
+    std::vector<std::uint32_t> places(vertices, kNone);
+    baked.positions.reserve(vertices);
+    for (std::size_t patch = 0; patch < mesh.size(); ++patch) {
+        for (int k = 0; k < mesh.cornerCount(patch); ++k) {
+            std::uint32_t& vertex = baked.faces[patch][static_cast<std::size_t>(k)];
+            if (places[vertex] == kNone) {
+                places[vertex] = static_cast<std::uint32_t>(baked.positions.size());
+                baked.positions.push_back(mesh.position(patch, k));
+            }
+            vertex = places[vertex];
+        }
+    }
+    return baked;
+}
+
+/// Of each vertex its corners (4 × patch + k), in order.
+class VertexCorners {
+public:
+    VertexCorners(const PatchMesh& mesh, const BakedMesh& baked) : ends_(baked.positions.size() + 1, 0) {
+        const auto forEachCorner = [&](const auto& action) {
+            for (std::uint32_t patch = 0; patch < mesh.size(); ++patch)
+                for (int k = 0; k < mesh.cornerCount(patch); ++k)
+                    action(4 * patch + static_cast<std::uint32_t>(k), baked.faces[patch][static_cast<std::size_t>(k)]);
+        };
+        forEachCorner([&](std::uint32_t, std::uint32_t vertex) { ++ends_[vertex + 1]; });
+        std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+        corners_.resize(ends_.back());
+        // Filling moves each vertex's begin to its end, which is where the next one begins.
+        forEachCorner([&](std::uint32_t corner, std::uint32_t vertex) { corners_[ends_[vertex]++] = corner; });
+    }
+
+    std::span<const std::uint32_t> of(std::size_t vertex) const {
+        const std::size_t begin = vertex == 0 ? 0 : ends_[vertex - 1];
+        return std::span(corners_).subspan(begin, ends_[vertex] - begin);
+    }
+
+private:
+    std::vector<std::uint32_t> ends_; ///< #vertices + 1, into corners_
+    std::vector<std::uint32_t> corners_;
+};
+
 } // namespace
 
 BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const RadiositySolution& solution,
                              const ReconstructionOptions& options, std::size_t* separatedFaces) {
-    const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, options.creaseAngle);
-    if (separatedFaces != nullptr) *separatedFaces = halfEdges.separatedFaces;
-    const auto& topology = halfEdges.topology;
-
-    BakedMesh baked;
+    BakedMesh baked = makeVertices(mesh, options.creaseAngle, separatedFaces);
     baked.materials = scene.materials;
     baked.faceMaterials = mesh.material;
     baked.opacity = mesh.opacity;
+    baked.emitters.reserve(mesh.size());
     for (const Rgb& b : mesh.emittedRadiosity) baked.emitters.push_back(b != Rgb(0.0F));
-    baked.positions.resize(topology.n_vertices());
-    std::vector<RgbSum> irradiance(topology.n_vertices(), RgbSum(0.0));
-    std::vector<double> weights(topology.n_vertices(), 0.0);
-    std::vector<glm::dvec3> normals(topology.n_vertices(), glm::dvec3(0.0));
-    std::vector<RgbSum> reflectance(topology.n_vertices(), RgbSum(0.0));
-    std::vector<RgbSum> emitted(topology.n_vertices(), RgbSum(0.0));
-    baked.faces.reserve(mesh.size());
-    for (const auto face : topology.faces()) {
-        const auto patch = static_cast<std::size_t>(face.idx());
-        const double openness = std::max(1.0 - static_cast<double>(solution.covered[patch]), kSmallestOpenness);
-        std::array<std::uint32_t, 4> corners{kNone, kNone, kNone, kNone};
-        // OpenMesh starts a face's walk at any of its vertices; the patch knows the order.
-        for (const auto vertex : face.vertices()) {
-            const auto p = topology.point(vertex);
-            const glm::vec3 position(p[0], p[1], p[2]);
-            int k = 0;
-            while (k + 1 < mesh.cornerCount(patch) && mesh.position(patch, k) != position) ++k;
-            const auto index = static_cast<std::size_t>(vertex.idx());
-            corners[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(index);
-            const double weight = static_cast<double>(mesh.area[patch]) * angleAt(mesh, patch, k);
-            irradiance[index] += weight * openness * solution.irradiance[patch];
-            weights[index] += weight * openness;
-            normals[index] += weight * glm::dvec3(mesh.normal[patch]);
-            reflectance[index] += weight * openness * RgbSum(mesh.reflectance[patch]);
-            emitted[index] += weight * openness * RgbSum(mesh.emittedRadiosity[patch]);
-            baked.positions[index] = position;
+
+    const VertexCorners around(mesh, baked);
+    const std::size_t count = baked.positions.size();
+    baked.irradiance.reserve(count);
+    baked.radiosity.reserve(count);
+    baked.normals.reserve(count);
+    for (std::size_t vertex = 0; vertex < count; ++vertex) {
+        RgbSum irradiance(0.0), reflectance(0.0), emitted(0.0);
+        glm::dvec3 normal(0.0);
+        double weights = 0.0;
+        for (const std::uint32_t corner : around.of(vertex)) {
+            const std::uint32_t patch = corner / 4;
+            const double openness = std::max(1.0 - static_cast<double>(solution.covered[patch]), kSmallestOpenness);
+            const double whole =
+                static_cast<double>(mesh.area[patch]) * angleAt(mesh, patch, static_cast<int>(corner % 4));
+            const double weight = whole * openness;
+            irradiance += weight * solution.irradiance[patch];
+            reflectance += weight * RgbSum(mesh.reflectance[patch]);
+            emitted += weight * RgbSum(mesh.emittedRadiosity[patch]);
+            normal += whole * glm::dvec3(mesh.normal[patch]);
+            weights += weight;
         }
-        baked.faces.push_back(corners);
-    }
-    for (std::size_t i = 0; i < baked.positions.size(); ++i) {
-        const double share = weights[i] > 0.0 ? 1.0 / weights[i] : 0.0;
-        const RgbSum e = share * irradiance[i];
+        const double share = weights > 0.0 ? 1.0 / weights : 0.0;
+        const RgbSum e = share * irradiance;
         baked.irradiance.emplace_back(e);
-        baked.radiosity.emplace_back(share * emitted[i] + share * reflectance[i] * e);
-        const double length = glm::length(normals[i]);
-        baked.normals.push_back(length > 0.0 ? glm::vec3(normals[i] / length) : glm::vec3(0.0F, 0.0F, 1.0F));
+        baked.radiosity.emplace_back(share * emitted + share * reflectance * e);
+        const double length = glm::length(normal);
+        baked.normals.push_back(length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F, 0.0F, 1.0F));
     }
     return baked;
 }

@@ -28,22 +28,21 @@ void requireFinite(std::span<const glm::vec3> values, const char* what, const st
 void writeObj(const BakedMesh& mesh, const std::filesystem::path& path, const BakeOutputOptions& options) {
     std::filesystem::path materials = path;
     materials.replace_extension(".mtl");
-    writeWholeFiles(std::array{FileContent{materials, encodeMtl(mesh)},
-                               FileContent{path, encodeObj(mesh, options, materials.filename().string())}});
+    const std::string name = materials.filename().string();
+    writeWholeFiles(
+        std::array{FileStream{materials, [&](std::ostream& stream) { encodeMtl(mesh, stream); }},
+                   FileStream{path, [&](std::ostream& stream) { encodeObj(mesh, options, name, stream); }}});
 }
 
 void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat format,
            const BakeOutputOptions& options) {
-    switch (format) {
-    case BakedFormat::Glb:
-        return writeWholeFile(path, encodeGltf(mesh, options, true));
-    case BakedFormat::Gltf:
-        return writeWholeFile(path, encodeGltf(mesh, options, false));
-    case BakedFormat::Ply:
-        return writeWholeFile(path, encodePly(mesh, options));
-    case BakedFormat::Obj:
-        return writeObj(mesh, path, options);
-    }
+    if (format == BakedFormat::Obj) return writeObj(mesh, path, options);
+    writeWholeFile(path, [&](std::ostream& stream) {
+        if (format == BakedFormat::Ply)
+            encodePly(mesh, options, stream);
+        else
+            encodeGltf(mesh, options, format == BakedFormat::Glb, path.string(), stream);
+    });
 }
 
 } // namespace
@@ -67,7 +66,8 @@ void writeBaked(const BakedMesh& mesh, const std::filesystem::path& path, BakedF
     requireFinite(mesh.normals, "normal", path);
     requireFinite(mesh.radiosity, "radiosity", path);
     requireFinite(mesh.irradiance, "irradiance", path);
-    if (mesh.opacity.empty())
+    const bool gltf = format == BakedFormat::Glb || format == BakedFormat::Gltf;
+    if (gltf || mesh.opacity.empty())
         write(mesh, path, format, options);
     else
         write(withoutHoles(mesh), path, format, options);

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/failure.h"
 #include "cli/terminal_text.h"
+#include "core/process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
     // A pipe closed early or a file that may not grow is an error of writing, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    lambert::returnLargeBlocks();
     try {
         return run(argc, argv);
     } catch (...) {

@@ -9,7 +9,4 @@ namespace lambert {
 /// becomes U+FFFD.
 std::string htmlEscaped(std::string_view text);
 
-/// A file as part of a page: data:MEDIATYPE;base64,…
-std::string dataUri(std::string_view mediaType, std::string_view content);
-
 } // namespace lambert

@@ -1,6 +1,7 @@
 #include "comparison/html_page.h"
 
 #include "comparison/html.h"
+#include "core/data_uri.h"
 
 #include <fmt/format.h>
 

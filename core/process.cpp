@@ -42,6 +42,8 @@ bool resetPeakMemory() {
     return references.good();
 }
 
+void returnLargeBlocks() { ::mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+
 double processorSeconds() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);

@@ -22,13 +22,23 @@ namespace {
 
 constexpr double kMostPatches = 2e8;
 constexpr double kLongestOverEqual = 2.0; ///< of a patch's length to that of as many equal squares
+constexpr double kMoreThanExpected = 1.3; ///< room that is not used stays with the system
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
 /// Collects the patches of one polygon after the other.
 class PatchMeshBuilder {
 public:
-    PatchMeshBuilder(const Scene& scene, MeshReport& report) : scene_(scene), report_(report) {
+    /// `expected` patches, about.
+    PatchMeshBuilder(const Scene& scene, std::size_t expected, MeshReport& report) : scene_(scene), report_(report) {
         mesh_.positions = scene.positions;
+        mesh_.corners.reserve(expected);
+        mesh_.centroid.reserve(expected);
+        mesh_.normal.reserve(expected);
+        mesh_.area.reserve(expected);
+        mesh_.reflectance.reserve(expected);
+        mesh_.emittedRadiosity.reserve(expected);
+        mesh_.polygon.reserve(expected);
+        mesh_.material.reserve(expected);
     }
 
     std::vector<glm::vec3>& positions() { return mesh_.positions; }
@@ -196,12 +206,12 @@ void dividePolygon(std::uint32_t index, const Scene& scene, const EdgeDivision& 
     }
 }
 
-/// One division of the scene at a given target length.
+/// One division of the scene at a given target length, into about `expected` patches.
 PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector<PlanarContact>& contacts,
-                 double length, Progress& progress, MeshReport& report) {
+                 double length, double expected, Progress& progress, MeshReport& report) {
     report = MeshReport{};
     report.patchLength = length;
-    PatchMeshBuilder builder(scene, report);
+    PatchMeshBuilder builder(scene, static_cast<std::size_t>(kMoreThanExpected * expected), report);
     const EdgeDivision division(scene, index, length, builder.positions());
     auto contact = contacts.begin(); // in the polygons' order, like the loop
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
@@ -213,7 +223,7 @@ PatchMesh divide(const Scene& scene, const VertexIndex& index, const std::vector
 }
 
 PatchMesh keepPolygons(const Scene& scene, MeshReport& report) {
-    PatchMeshBuilder builder(scene, report);
+    PatchMeshBuilder builder(scene, scene.polygons.size(), report);
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
         const Polygon& polygon = scene.polygons[i];
         if (isOccluder(scene, polygon))
@@ -263,7 +273,7 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
         if (predicted > kMostPatches)
             throw UsageError(fmt::format("patch length {} m: would make about {:.0f} patches, allowed are {:.0f}",
                                          *options.patchLength, predicted, kMostPatches));
-        return divide(scene, index, contacts, *options.patchLength, progress, counts);
+        return divide(scene, index, contacts, *options.patchLength, predicted, progress, counts);
     }
     const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
     if (wanted > kMostPatches)
@@ -272,11 +282,11 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
     // If small polygons use up the number, or almost, the large ones must not stay whole all the same.
     const double equal = std::sqrt(totalArea(scene) / wanted);
     const double longest = kLongestOverEqual * equal;
-    if (polygons >= wanted) return divide(scene, index, contacts, longest, progress, counts);
+    if (polygons >= wanted) return divide(scene, index, contacts, longest, polygons, progress, counts);
 
     // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
     double length = equal;
-    PatchMesh mesh = divide(scene, index, contacts, length, progress, counts);
+    PatchMesh mesh = divide(scene, index, contacts, length, wanted, progress, counts);
     for (int attempt = 0; attempt < 5; ++attempt) {
         const auto found = static_cast<double>(mesh.size());
         if (std::abs(found / wanted - 1.0) < 0.03) break;
@@ -285,7 +295,8 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
         const double next = std::min(longest, length * std::sqrt(std::max(found - base, 1.0) / (wanted - base)));
         if (next == length) break;
         length = next;
-        mesh = divide(scene, index, contacts, length, progress, counts);
+        mesh = PatchMesh(); // two of them would take twice the memory
+        mesh = divide(scene, index, contacts, length, wanted, progress, counts);
     }
     return mesh;
 }

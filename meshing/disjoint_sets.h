@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace lambert {
@@ -23,6 +24,11 @@ public:
         a = root(a);
         b = root(b);
         parent_[std::max(a, b)] = std::min(a, b);
+    }
+    /// The root of each element; the sets are used up.
+    std::vector<std::uint32_t> roots() && {
+        for (std::uint32_t element = 0; element < parent_.size(); ++element) parent_[element] = root(element);
+        return std::move(parent_);
     }
 
 private:

@@ -16,9 +16,12 @@ namespace {
 
 struct PatchEdge {
     std::pair<std::uint32_t, std::uint32_t> key;
-    std::uint32_t patch; ///< kNone: of an occluder
+    std::uint32_t owner; ///< patch; from #patches on, #patches + index into occluderEdges
     bool forward;        ///< the patch runs from the smaller vertex to the larger
-    glm::vec3 centroid;  ///< of the patch or occluder
+
+    const glm::vec3& centroid(const PatchMesh& mesh) const {
+        return owner < mesh.size() ? mesh.centroid[owner] : mesh.occluderEdges[owner - mesh.size()].centroid;
+    }
 };
 
 std::uint32_t cornerAt(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t vertex) {
@@ -30,18 +33,19 @@ std::uint32_t cornerAt(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t
 /// Edges of the fronts and of the occluders, sorted.
 std::vector<PatchEdge> frontEdges(const PatchMesh& mesh) {
     std::vector<PatchEdge> edges;
-    edges.reserve(4 * mesh.frontCount);
+    edges.reserve(4 * mesh.frontCount + mesh.occluderEdges.size());
     for (std::uint32_t patch = 0; patch < mesh.frontCount; ++patch) {
         const int count = mesh.cornerCount(patch);
         for (int k = 0; k < count; ++k) {
             const std::uint32_t a = mesh.corners[patch][static_cast<std::size_t>(k)];
             const std::uint32_t b = mesh.corners[patch][static_cast<std::size_t>((k + 1) % count)];
-            edges.push_back({edgeKey(a, b), patch, a < b, mesh.centroid[patch]});
+            edges.push_back({edgeKey(a, b), patch, a < b});
         }
     }
-    for (const OccluderEdge& edge : mesh.occluderEdges) edges.push_back({edge.vertices, kNone, true, edge.centroid});
+    auto occluder = static_cast<std::uint32_t>(mesh.size());
+    for (const OccluderEdge& edge : mesh.occluderEdges) edges.push_back({edge.vertices, occluder++, true});
     std::sort(edges.begin(), edges.end(), [](const PatchEdge& a, const PatchEdge& b) {
-        return std::tie(a.key, a.patch) < std::tie(b.key, b.patch);
+        return std::tie(a.key, a.owner) < std::tie(b.key, b.owner);
     });
     return edges;
 }
@@ -49,17 +53,17 @@ std::vector<PatchEdge> frontEdges(const PatchMesh& mesh) {
 /// Whether another patch or an occluder at the edge rises on the front side of these two (`side` 1) or on their back (−1).
 bool somethingStandsOn(const PatchMesh& mesh, std::span<const PatchEdge> around, const PatchEdge& one,
                        const PatchEdge& two, float side) {
-    const glm::vec3 normal = side * glm::normalize(mesh.normal[one.patch] + mesh.normal[two.patch]);
+    const glm::vec3 normal = side * glm::normalize(mesh.normal[one.owner] + mesh.normal[two.owner]);
     const glm::vec3 foot = mesh.positions[one.key.first];
     return std::any_of(around.begin(), around.end(), [&](const PatchEdge& other) {
-        if (other.patch == one.patch || other.patch == two.patch) return false;
-        const glm::vec3 toOther = other.centroid - foot;
+        if (other.owner == one.owner || other.owner == two.owner) return false;
+        const glm::vec3 toOther = other.centroid(mesh) - foot;
         return glm::dot(normal, toOther) > 0.01F * glm::length(toOther);
     });
 }
 
-/// Corners (4 × patch + k) that share a vertex of one smoothing side.
-DisjointSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
+/// Of each corner (4 × patch + k) the first one that shares its vertex of one smoothing side.
+std::vector<std::uint32_t> smoothCorners(const PatchMesh& mesh, float creaseAngle) {
     const float smallestCosine = std::cos(creaseAngle);
     DisjointSets sets(4 * mesh.size());
     const auto connect = [&](std::uint32_t one, std::uint32_t two, std::uint32_t vertex) {
@@ -73,51 +77,64 @@ DisjointSets smoothCorners(const PatchMesh& mesh, float creaseAngle) {
             for (std::size_t j = i + 1; j < around.size(); ++j) {
                 const PatchEdge& one = around[i];
                 const PatchEdge& two = around[j];
-                if (two.patch == kNone) break; // occluders come last
-                if (one.forward == two.forward || mesh.material[one.patch] != mesh.material[two.patch] ||
-                    glm::dot(mesh.normal[one.patch], mesh.normal[two.patch]) < smallestCosine)
+                if (two.owner >= mesh.size()) break; // occluders come last
+                if (one.forward == two.forward || mesh.material[one.owner] != mesh.material[two.owner] ||
+                    glm::dot(mesh.normal[one.owner], mesh.normal[two.owner]) < smallestCosine)
                     continue;
-                const std::uint32_t backOne = mesh.lookup.backPatch(mesh.polygon[one.patch], one.patch);
-                const std::uint32_t backTwo = mesh.lookup.backPatch(mesh.polygon[two.patch], two.patch);
+                const std::uint32_t backOne = mesh.lookup.backPatch(mesh.polygon[one.owner], one.owner);
+                const std::uint32_t backTwo = mesh.lookup.backPatch(mesh.polygon[two.owner], two.owner);
                 const bool openFront = !somethingStandsOn(mesh, around, one, two, 1.0F);
                 const bool openBack =
                     backOne != kNone && backTwo != kNone && !somethingStandsOn(mesh, around, one, two, -1.0F);
                 for (const std::uint32_t vertex : {one.key.first, one.key.second}) {
-                    if (openFront) connect(one.patch, two.patch, vertex);
+                    if (openFront) connect(one.owner, two.owner, vertex);
                     if (openBack) connect(backOne, backTwo, vertex);
                 }
             }
         }
     }
-    return sets;
+    return std::move(sets).roots();
 }
 
 } // namespace
 
 HalfEdgeMesh buildHalfEdgeMesh(const PatchMesh& mesh, float creaseAngle) {
     using Topology = decltype(HalfEdgeMesh::topology);
-    DisjointSets sets = smoothCorners(mesh, creaseAngle);
     HalfEdgeMesh result;
     Topology& topology = result.topology;
+    std::vector<Corners>& corners = result.corners;
     const auto addVertex = [&](std::uint32_t position) {
         const glm::vec3& p = mesh.positions[position];
-        return topology.add_vertex(Topology::Point(p.x, p.y, p.z));
+        return static_cast<std::uint32_t>(topology.add_vertex(Topology::Point(p.x, p.y, p.z)).idx());
     };
+    {
+        const std::vector<std::uint32_t> first = smoothCorners(mesh, creaseAngle);
+        corners.reserve(mesh.size());
+        for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+            Corners& vertices = corners.emplace_back(Corners{kNone, kNone, kNone, kNone});
+            for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(mesh.cornerCount(patch)); ++k) {
+                const std::uint32_t of = first[4 * patch + k];
+                vertices[k] = of == 4 * patch + k ? addVertex(mesh.corners[patch][k]) : corners[of / 4][of % 4];
+            }
+        }
+    }
 
     ::omerr().disable(); // it reports each refused face; they are counted instead
-    std::vector<int> vertexOfSet(4 * mesh.size(), -1);
+    // Growing, the edges would be in memory twice; there are never more of them than corners.
+    topology.reserve(topology.n_vertices(), 4 * mesh.size(), mesh.size());
     std::vector<Topology::VertexHandle> face;
-    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+    const auto add = [&](std::size_t patch) {
         face.clear();
-        for (int k = 0; k < mesh.cornerCount(patch); ++k) {
-            int& vertex = vertexOfSet[sets.root(4 * patch + static_cast<std::uint32_t>(k))];
-            if (vertex < 0) vertex = addVertex(mesh.corners[patch][static_cast<std::size_t>(k)]).idx();
-            face.emplace_back(vertex);
-        }
-        if (topology.add_face(face).is_valid()) continue;
+        for (int k = 0; k < mesh.cornerCount(patch); ++k)
+            face.emplace_back(static_cast<int>(corners[patch][static_cast<std::size_t>(k)]));
+        return topology.add_face(face).is_valid();
+    };
+    for (std::size_t patch = 0; patch < mesh.size(); ++patch) {
+        if (add(patch)) continue;
         ++result.separatedFaces;
-        for (std::size_t k = 0; k < face.size(); ++k) face[k] = addVertex(mesh.corners[patch][k]);
-        topology.add_face(face);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.cornerCount(patch)); ++k)
+            corners[patch][k] = addVertex(mesh.corners[patch][k]);
+        add(patch);
     }
     ::omerr().enable();
     return result;

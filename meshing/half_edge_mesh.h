@@ -19,7 +19,10 @@ struct HalfEdgeTraits : OpenMesh::DefaultTraits {
 /// continuous, and creases, material borders and contact lines are boundaries.
 struct HalfEdgeMesh {
     OpenMesh::PolyMesh_ArrayKernelT<HalfEdgeTraits> topology; //!< face index = patch index
-    std::size_t separatedFaces = 0;                           //!< refused as non-manifold, given vertices of their own
+    /// #patches, the vertices at the patch's corners, in their order; a triangle ends in kNone. The topology's faces begin with
+    /// any of them.
+    std::vector<std::array<std::uint32_t, 4>> corners;
+    std::size_t separatedFaces = 0; //!< refused as non-manifold, given vertices of their own
 };
 
 /// Connects two patches across an edge if their materials are the same, their normals differ by less than `creaseAngle`

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "formfactors/hemicube.h"
 #include "scene/example_scenes.h"
+#include "tests/baking/sample_mesh.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -247,6 +248,15 @@ TEST(TexturedScenes, HolesAreNotWrittenAndNotDark) {
         }
     }
     EXPECT_GT(leastOnLeaf, 0.2F * mostOnLeaf); // cos⁴ of the angle to the lamp is at least 0.3
+
+    // A glTF leaves them out by itself.
+    for (const char* name : {"holes.glb", "holes.gltf"}) {
+        const std::filesystem::path withHoles = test::temporaryFile(name);
+        const std::filesystem::path without = test::temporaryFile(std::string("no_") + name);
+        writeBaked(baked.baked, withHoles, *formatOf(withHoles), {});
+        writeBaked(written, without, *formatOf(without), {});
+        EXPECT_EQ(test::contentOf(withHoles), test::contentOf(without));
+    }
 }
 
 } // namespace

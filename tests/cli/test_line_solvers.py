@@ -28,6 +28,15 @@ class Light(ProgramTest):
         self.assertEqual(one["stochastic"], three["stochastic"])
 
 
+class Memory(ProgramTest):
+    def test_of_a_whole_bake_grows_by_at_most_400_bytes_per_patch(self):
+        # Each thread that gets to run adds a few megabytes of its own, whatever the number of patches: a busy machine runs more.
+        few, many = (self.bake(BOX, "--patches", n, "--solver", "stochastic", "--rays", "1e5", "--threads", "1",
+                               "-o", self.folder / "baked.glb") for n in (100_000, 300_000))
+        bytes_per_patch = (many["peak_memory_bytes"] - few["peak_memory_bytes"]) / (many["patches"] - few["patches"])
+        self.assertLessEqual(bytes_per_patch, 400)
+
+
 class SolutionFile(ProgramTest):
     def test_is_read_again(self):
         for solver in ("stochastic", "random-walk"):

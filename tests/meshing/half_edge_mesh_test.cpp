@@ -42,19 +42,24 @@ std::set<std::uint32_t> neighbours(const PatchMesh& mesh, const Topology& topolo
 }
 
 /// What must hold for every mesh: a face per patch, with the patch's corners in their order.
-void expectFacesArePatches(const PatchMesh& mesh, const Topology& topology) {
+void expectFacesArePatches(const PatchMesh& mesh, const HalfEdgeMesh& halfEdges) {
+    const Topology& topology = halfEdges.topology;
     ASSERT_EQ(topology.n_faces(), mesh.size());
+    ASSERT_EQ(halfEdges.corners.size(), mesh.size());
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-        std::vector<glm::vec3> corners, expected;
-        for (const auto vertex : topology.fv_range(topology.face_handle(patch))) {
-            const auto& p = topology.point(vertex);
-            corners.emplace_back(p[0], p[1], p[2]);
+        std::vector<std::uint32_t> walk, expected;
+        for (const auto vertex : topology.fv_range(topology.face_handle(patch)))
+            walk.push_back(static_cast<std::uint32_t>(vertex.idx()));
+        for (int k = 0; k < mesh.cornerCount(patch); ++k) {
+            expected.push_back(halfEdges.corners[patch][static_cast<std::size_t>(k)]);
+            const auto& p = topology.point(topology.vertex_handle(expected.back()));
+            ASSERT_EQ(glm::vec3(p[0], p[1], p[2]), mesh.position(patch, k)) << "patch " << patch;
         }
-        for (int k = 0; k < mesh.cornerCount(patch); ++k) expected.push_back(mesh.position(patch, k));
-        const auto start = std::find(corners.begin(), corners.end(), expected[0]);
-        ASSERT_NE(start, corners.end());
-        std::rotate(corners.begin(), start, corners.end());
-        ASSERT_EQ(corners, expected) << "patch " << patch;
+        ASSERT_EQ(halfEdges.corners[patch][3] == kNone, !mesh.isQuad(patch));
+        const auto start = std::find(walk.begin(), walk.end(), expected[0]);
+        ASSERT_NE(start, walk.end());
+        std::rotate(walk.begin(), start, walk.end());
+        ASSERT_EQ(walk, expected) << "patch " << patch;
     }
 }
 
@@ -62,7 +67,7 @@ TEST(HalfEdgeMesh, IsSmoothInsideARefinedSquare) {
     const Scene scene = flatScene(std::array<glm::vec2, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
     const PatchMesh mesh = meshWithLength(scene, 0.1);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 0U);
     EXPECT_EQ(halfEdges.topology.n_vertices(), 11U * 11U);
     std::map<unsigned, int> valences;
@@ -78,7 +83,7 @@ TEST(HalfEdgeMesh, BreaksAtTheEdgesOfABox) {
     scene = prepareScene(scene);
     const PatchMesh mesh = meshWithLength(scene, 0.25);
     const HalfEdgeMesh sharp = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, sharp.topology);
+    expectFacesArePatches(mesh, sharp);
     for (std::uint32_t i = 0; i < 6; ++i) EXPECT_TRUE(neighbours(mesh, sharp.topology, i).empty());
     EXPECT_EQ(sharp.topology.n_vertices(), 6U * 25U);
 
@@ -130,7 +135,7 @@ TEST(HalfEdgeMesh, BreaksTheSideOnWhichSomethingStands) {
         for (Polygon& polygon : scene.polygons) polygon.backMaterial = polygon.material;
         const PatchMesh mesh = meshWithLength(scene, 0.5);
         const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-        expectFacesArePatches(mesh, halfEdges.topology);
+        expectFacesArePatches(mesh, halfEdges);
         EXPECT_EQ(neighbours(mesh, halfEdges.topology, 0).empty(), top > 0.0F) << top;
         EXPECT_EQ(neighbours(mesh, halfEdges.topology, 0, true).empty(), top < 0.0F) << top;
     }
@@ -162,7 +167,7 @@ TEST(HalfEdgeMesh, KeepsSheetsBackToBackApartAndSmooth) {
     const Scene scene = facesScene(faces);
     const PatchMesh mesh = meshWithLength(scene, 0.25);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 0U);
     EXPECT_EQ(halfEdges.topology.n_vertices(), 2U * 25U);
     EXPECT_TRUE(neighbours(mesh, halfEdges.topology, 0).empty());
@@ -174,7 +179,7 @@ TEST(HalfEdgeMesh, GivesBacksOfTwoSidedPolygonsTheirOwnVertices) {
     const PatchMesh mesh = meshWithLength(scene, 0.25);
     ASSERT_EQ(mesh.size(), 32U);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 0U);
     EXPECT_EQ(halfEdges.topology.n_vertices(), 2U * 25U);
     neighbours(mesh, halfEdges.topology, 0, true);
@@ -191,7 +196,7 @@ PatchMesh threeSheets(float slope) {
 TEST(HalfEdgeMesh, ConnectsTheUpperTwoOfThreeSheets) {
     const PatchMesh mesh = threeSheets(0.1F);
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 0U);
     EXPECT_EQ(neighbours(mesh, halfEdges.topology, 0), std::set<std::uint32_t>{2});
 }
@@ -199,7 +204,7 @@ TEST(HalfEdgeMesh, ConnectsTheUpperTwoOfThreeSheets) {
 TEST(HalfEdgeMesh, CountsTheFacesThatAreNotManifold) {
     const PatchMesh mesh = threeSheets(0.005F); // too flat to tell which one is above
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 2U) << "the third sheet's faces at the edge";
 }
 
@@ -209,7 +214,7 @@ TEST_P(HalfEdgeMeshOf, HasThePatchesAsFacesAndRefusesNone) {
     const Scene& scene = GetParam().scene;
     const PatchMesh mesh = meshWithLength(scene, 0.1 * static_cast<double>(boundsOf(scene).diagonal()));
     const HalfEdgeMesh halfEdges = buildHalfEdgeMesh(mesh, kCrease);
-    expectFacesArePatches(mesh, halfEdges.topology);
+    expectFacesArePatches(mesh, halfEdges);
     EXPECT_EQ(halfEdges.separatedFaces, 0U);
 }
 
