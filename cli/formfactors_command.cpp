@@ -53,7 +53,7 @@ void check(const FormFactorsArguments& a) {
         if (!a.groupBy.empty()) throw UsageError("--points: has no groups (--group-by)");
         if (const auto method = methodByName(a.transport.method.value_or("hemicube")); !hasPointRows(*method))
             throw UsageError(fmt::format("--points: the method {} has no factors from points; allowed are hemicube, "
-                                         "hemisphere and local-lines",
+                                         "hemisphere, local-lines and closed-form",
                                          nameOf(*method)));
         if (a.transport.repair || !a.transport.checkpoint.empty() || !a.transport.formFactors.empty())
             throw UsageError("--points: leave out --repair, --checkpoint and --form-factors, which are for patches");
@@ -132,14 +132,15 @@ void computePoints(Run& run) {
     FormFactorMatrix matrix(points.size(), options.storage.value_or(MatrixStorage::Float));
     std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()),
                                              RowAccumulator(run.scene.mesh.size()));
+    // Rays must not meet the surface that their point lies on.
+    const float offset = method->raysPerRow() > 0 ? run.scene.rays->originOffset(0.0F) : 0.0F;
     run.progress.begin("form factors", points.size());
     parallelFor(points.size(), 1, [&](std::size_t begin, std::size_t end, int worker) {
         FormFactorRow row;
         for (std::size_t k = begin; k < end; ++k) {
             const glm::vec3 normal = glm::normalize(points[k].normal);
             RowAccumulator& accumulator = accumulators[static_cast<std::size_t>(worker)];
-            method->pointRow(points[k].position + run.scene.rays->originOffset(0.0F) * normal, normal,
-                             static_cast<std::uint32_t>(k), accumulator);
+            method->pointRow(points[k].position + offset * normal, normal, static_cast<std::uint32_t>(k), accumulator);
             accumulator.take(row);
             matrix.setRow(k, row);
         }

@@ -23,23 +23,6 @@ using Cluster = PatchClusters::Cluster;
 constexpr double kSmallestFactor = 1e-14;
 constexpr double kUpright = 4.0; // see gaussOrder
 
-/// Lowest and highest corner over a plane.
-std::array<double, 2> cornerHeights(const Plane& plane, std::span<const glm::dvec3> points) {
-    std::array<double, 2> range{plane.height(points[0]), plane.height(points[0])};
-    for (const glm::dvec3& p : points) {
-        const double height = plane.height(p);
-        range[0] = std::min(range[0], height);
-        range[1] = std::max(range[1], height);
-    }
-    return range;
-}
-
-ConvexPolygon reversed(const ConvexPolygon& polygon) {
-    ConvexPolygon result = polygon;
-    std::reverse(result.corners.begin(), result.corners.begin() + static_cast<std::ptrdiff_t>(result.size));
-    return result;
-}
-
 } // namespace
 
 /// The computation of one row.
@@ -84,8 +67,8 @@ private:
         both.add(node.extents);
         for (std::size_t k = begin; k < end; ++k) {
             const Occluder* occluder = stack_[k];
-            if (!mayBlock(*occluder, node, both)) continue;
-            stack_.push_back(occluder);
+            if (mayStandBetween(*occluder, from_.polygon.points(), node.extents, both, method_.directions_.list(), t))
+                stack_.push_back(occluder);
         }
         if (stack_.size() == end) {
             for (std::uint32_t c = node.first; c < node.last; ++c) addCluster(clusters().clusters()[c], end);
@@ -96,15 +79,6 @@ private:
             visit(node.right, end);
         }
         stack_.resize(end);
-    }
-
-    bool mayBlock(const Occluder& occluder, const PatchClusters::Node& node, const Extents& both) const {
-        if (both.apart(occluder.extents, method_.directions_.list().size(), method_.tolerance_)) return false;
-        const double t = method_.tolerance_;
-        const auto here = cornerHeights(occluder.plane, from_.polygon.points());
-        const auto there = heights(occluder.plane, node.extents);
-        if (here[0] >= -t && there[0] >= -t) return false;
-        return !(here[1] <= t && there[1] <= t);
     }
 
     void addCluster(const Cluster& cluster, std::size_t firstOccluder) {

@@ -28,11 +28,15 @@ public:
     ClosedForm(const PatchMesh& mesh, const RayCaster& rays, const ClosedFormOptions& options);
 
     void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
+    /// Exact, as what a point sees of a polygon is a polygon.
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                  RowAccumulator& accumulator) const override;
     std::size_t patchCount() const override { return patchCount_; }
     std::uint64_t raysPerRow() const override { return 0; }
 
 private:
     class Row;
+    class PointRow;
 
     const RayCaster& rays_;
     ClosedFormOptions options_;

@@ -20,6 +20,22 @@ glm::dvec3 ConvexPolygon::centre() const {
     return sum / static_cast<double>(size);
 }
 
+std::array<double, 2> cornerHeights(const Plane& plane, std::span<const glm::dvec3> points) {
+    std::array<double, 2> range{plane.height(points[0]), plane.height(points[0])};
+    for (const glm::dvec3& p : points) {
+        const double height = plane.height(p);
+        range[0] = std::min(range[0], height);
+        range[1] = std::max(range[1], height);
+    }
+    return range;
+}
+
+ConvexPolygon reversed(const ConvexPolygon& polygon) {
+    ConvexPolygon result = polygon;
+    std::reverse(result.corners.begin(), result.corners.begin() + static_cast<std::ptrdiff_t>(result.size));
+    return result;
+}
+
 void split(const ConvexPolygon& polygon, const Plane& plane, double tolerance, ConvexPolygon& front,
            ConvexPolygon& behind) {
     front.size = 0;

@@ -45,6 +45,12 @@ struct ConvexPolygon {
     glm::dvec3 centre() const; ///< mean of the corners
 };
 
+/// Lowest and highest point over a plane; at least one point.
+std::array<double, 2> cornerHeights(const Plane& plane, std::span<const glm::dvec3> points);
+
+/// The same polygon seen from its other side.
+ConvexPolygon reversed(const ConvexPolygon& polygon);
+
 /// Cuts a polygon by a plane. Either part may be empty. Corners within `tolerance` of the plane count as in it.
 void split(const ConvexPolygon& polygon, const Plane& plane, double tolerance, ConvexPolygon& front,
            ConvexPolygon& behind);

@@ -215,6 +215,15 @@ void findSolids(std::vector<Occluder>& occluders) {
 
 } // namespace
 
+bool mayStandBetween(const Occluder& occluder, std::span<const glm::dvec3> from, const Extents& there,
+                     const Extents& both, std::span<const glm::dvec3> directions, double tolerance) {
+    if (both.apart(occluder.extents, directions.size(), tolerance)) return false;
+    const auto near = cornerHeights(occluder.plane, from);
+    const auto far = there.heights(occluder.plane, directions);
+    if (near[0] >= -tolerance && far[0] >= -tolerance) return false;
+    return !(near[1] <= tolerance && far[1] <= tolerance);
+}
+
 Occluders gatherOccluders(const Scene& scene, Directions& directions, double tolerance) {
     Occluders occluders = Joining(scene, tolerance).run();
     for (Occluder& occluder : occluders.list) directions.enter(occluder.plane);

@@ -4,6 +4,7 @@
 #include "formfactors/extents.h"
 #include "scene/scene.h"
 
+#include <span>
 #include <vector>
 
 namespace lambert {
@@ -27,6 +28,11 @@ struct Occluders {
     std::vector<Occluder> list;
     std::vector<std::uint32_t> ofPolygon; //!< #Scene::polygons, into the list
 };
+
+/// Whether an occluder may stand between some points and what lies within `there`; `both` are the extents of both, and
+/// `directions` the list that they refer to. What is nearer to a plane than `tolerance` (metres) counts as in it.
+bool mayStandBetween(const Occluder& occluder, std::span<const glm::dvec3> from, const Extents& there,
+                     const Extents& both, std::span<const glm::dvec3> directions, double tolerance);
 
 /// The polygons of a scene as few convex occluders: neighbours in one plane are joined where they share an edge and the whole
 /// stays convex. Points within `tolerance` (metres) of a plane count as in it. Polygons with holes are not joined.

@@ -30,7 +30,7 @@ constexpr std::array kMethods{MethodTraits{TransportMethod::Hemicube, "hemicube"
                               MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false, true, true},
                               MethodTraits{TransportMethod::LocalLines, "local-lines", false, true, true, true},
                               MethodTraits{TransportMethod::GlobalLines, "global-lines", false, true, false, false},
-                              MethodTraits{TransportMethod::ClosedForm, "closed-form", false, false, true, false}};
+                              MethodTraits{TransportMethod::ClosedForm, "closed-form", false, false, true, true}};
 
 const MethodTraits& traitsOf(TransportMethod method) {
     return *std::find_if(kMethods.begin(), kMethods.end(), [&](const MethodTraits& t) { return t.method == method; });

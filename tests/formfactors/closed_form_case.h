@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -64,6 +65,19 @@ struct ClosedFormCase {
     PatchMesh mesh;
     ClosedForm method;
 };
+
+/// Gives a quad, the only one of its material, a texture whose left half lets light pass.
+inline void openLeftHalf(Scene& scene, Polygon& quad) {
+    Material& leaf = scene.materials[quad.material];
+    leaf.opacityTexture.texture = 0;
+    leaf.opacityCutoff = 0.5F;
+    scene.textures.push_back(
+        std::make_shared<Texture>("half", 2, 1, std::vector<std::uint8_t>{255, 255, 255, 0, 255, 255, 255, 255}));
+    SurfaceCorners surface;
+    surface.uv = {glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0), glm::vec2(0, 0)};
+    quad.surface = static_cast<std::uint32_t>(scene.surfaces.size());
+    scene.surfaces.push_back(surface);
+}
 
 /// A box that floats in the unit cube.
 inline constexpr glm::dvec3 kBoxLow{0.35, 0.3, 0.4}, kBoxHigh{0.65, 0.6, 0.7};

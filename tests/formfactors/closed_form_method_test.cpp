@@ -209,15 +209,7 @@ TEST(ClosedFormMethod, WhatLeavesAnOpenSceneIsOut) {
 // 1.5 see the hole's edge in steps of 1 %, which cancel over the other 63 rows.
 TEST(ClosedFormMethod, LightPassesThroughHoles) {
     Scene scene = facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F));
-    Material& leaf = scene.materials[scene.polygons[2].material];
-    leaf.opacityTexture.texture = 0;
-    leaf.opacityCutoff = 0.5F;
-    scene.textures.push_back(
-        std::make_shared<Texture>("half", 2, 1, std::vector<std::uint8_t>{255, 255, 255, 0, 255, 255, 255, 255}));
-    SurfaceCorners surface;
-    surface.uv = {glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0), glm::vec2(0, 0)};
-    scene.polygons[2].surface = 0;
-    scene.surfaces.push_back(surface);
+    openLeftHalf(scene, scene.polygons[2]);
     const ClosedFormCase holed(scene);
 
     std::array<glm::vec3, 4> half = square(0.5F, 0.5F, 0.5F, 0.5F);
