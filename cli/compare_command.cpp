@@ -119,15 +119,14 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
 
     progress.setTitle("page");
     const nlohmann::ordered_json json = report(a, read.report, scene, comparison, watch.seconds());
-    std::vector<FileContent> files =
-        formFactorPage({a.scene.path.filename().string(),
-                        scene,
-                        comparison,
-                        {{"Seeds", fmt::format("{} per effort, from {}", a.seeds, a.run.seed)},
-                         {"Lambert", fmt::format("version {}, {} threads", LAMBERT_VERSION, threadCount())}},
-                        shot.camera,
-                        {shot.width, shot.height, 3}},
-                       progress);
+    std::vector<FileContent> files = formFactorPage(
+        {a.scene.path.filename().string(),
+         scene,
+         comparison,
+         {{"Seeds", fmt::format("{} per effort, from {}", a.seeds, a.run.seed)}, {"Lambert", versionText()}},
+         shot.camera,
+         {shot.width, shot.height, 3}},
+        progress);
     files.push_back({"results.csv", comparisonCsv(comparison, a.run.seed)});
     files.push_back({"results.json", jsonText(json)});
     progress.throwIfCancelled();

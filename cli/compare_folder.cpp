@@ -2,6 +2,7 @@
 
 #include "cli/targets.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +21,11 @@ std::vector<std::string> commaSeparated(const std::string& text) {
             result.back() += c;
     }
     return result;
+}
+
+std::string versionText() {
+    const int threads = threadCount();
+    return fmt::format("version {}, {} thread{}", LAMBERT_VERSION, threads, threads == 1 ? "" : "s");
 }
 
 void checkPageFolder(const fs::path& folder, std::span<const fs::path> others, std::span<const fs::path> inputs) {

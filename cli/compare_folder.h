@@ -19,6 +19,9 @@ std::vector<std::string> commaSeparated(const std::string& text);
 void checkPageFolder(const std::filesystem::path& folder, std::span<const std::filesystem::path> others,
                      std::span<const std::filesystem::path> inputs);
 
+/// Which Lambert compared, and on how many threads, for the page.
+std::string versionText();
+
 /// All files of the folder, their paths within it, or none. Throws SystemError.
 void writePageFolder(const std::filesystem::path& folder, std::vector<FileContent> files);
 

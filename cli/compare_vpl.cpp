@@ -192,8 +192,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
                  scene,
                  comparison,
                  pictures,
-                 {{"Seeds", fmt::format("{} each, from {}", a.seeds, a.run.seed)},
-                  {"Lambert", fmt::format("version {}, {} threads", LAMBERT_VERSION, threadCount())}}},
+                 {{"Seeds", fmt::format("{} each, from {}", a.seeds, a.run.seed)}, {"Lambert", versionText()}}},
                 progress);
     files.push_back({"results.csv", vplComparisonCsv(comparison, a.run.seed)});
     files.push_back({"results.json", jsonText(json)});
