@@ -21,6 +21,31 @@ namespace {
     throw SystemError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(error)));
 }
 
+/// A file open for writing that has no name: it vanishes with this process, however that ends. Not every file system has them.
+class NamelessFile {
+public:
+    explicit NamelessFile(const fs::path& folder)
+        : descriptor_(::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666)),
+          path_(fmt::format("/proc/self/fd/{}", descriptor_)) {}
+    ~NamelessFile() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    NamelessFile(const NamelessFile&) = delete;
+    NamelessFile& operator=(const NamelessFile&) = delete;
+
+    bool usable() const { return descriptor_ >= 0 && ::access(path_.c_str(), W_OK) == 0; }
+    /// Under which this process can open it.
+    const fs::path& path() const { return path_; }
+    bool giveName(const fs::path& name) const {
+        ::unlink(name.c_str()); // of a killed process with this one's number
+        return ::linkat(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    }
+
+private:
+    int descriptor_;
+    fs::path path_;
+};
+
 /// A new content on its way to replace a file: removed again unless committed.
 class Replacement {
 public:
@@ -36,12 +61,10 @@ public:
     Replacement& operator=(const Replacement&) = delete;
 
     void write(const std::function<void(std::ostream&)>& content) const {
-        errno = 0;
-        std::ofstream file(temporary_, std::ios::binary);
-        content(file);
-        file.close();
-        if (!file) fail(path_, errno != 0 ? errno : EIO);
-        flush();
+        const NamelessFile file(path_.parent_path());
+        const bool nameless = file.usable();
+        writeTo(nameless ? file.path() : temporary_, content);
+        if (nameless && !file.giveName(temporary_)) fail(path_, errno);
     }
 
     void write(std::string_view content) const {
@@ -56,8 +79,15 @@ public:
     }
 
 private:
-    void flush() const {
-        const int file = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+    /// Until it is on the disk.
+    void writeTo(const fs::path& target, const std::function<void(std::ostream&)>& content) const {
+        errno = 0;
+        std::ofstream stream(target, std::ios::binary);
+        content(stream);
+        stream.close();
+        if (!stream) fail(path_, errno != 0 ? errno : EIO);
+
+        const int file = ::open(target.c_str(), O_RDONLY | O_CLOEXEC);
         if (file < 0) fail(path_, errno);
         const int result = ::fsync(file);
         const int error = errno;

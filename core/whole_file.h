@@ -9,9 +9,9 @@
 
 namespace lambert {
 
-/// Writes `content` to `path` whole or not at all: to a temporary name in the same folder, flushed to disk,
-/// then renamed over the old file. Throws SystemError (with the path and the reason) and leaves the old file
-/// untouched if anything fails.
+/// Writes `content` to `path` whole or not at all: to a file in the same folder that has no name until it is on the disk,
+/// then renamed over the old file. A process killed before that leaves nothing (on file systems without nameless files a
+/// `.lambert-*.tmp`). Throws SystemError (with the path and the reason) and leaves the old file untouched if anything fails.
 void writeWholeFile(const std::filesystem::path& path, std::string_view content);
 
 /// The same for content too large for memory, written piece by piece; what `content` throws is passed on.

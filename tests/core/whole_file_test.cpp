@@ -9,8 +9,11 @@
 #include <array>
 #include <functional>
 #include <iterator>
+#include <string>
 #include <vector>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace lambert {
@@ -59,6 +62,41 @@ TEST(WriteWholeFile, ReplacesAnOldFile) {
     writeWholeFile(file, "new");
     EXPECT_EQ(contentOf(file), "new");
     EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+}
+
+bool hasNamelessFiles(const fs::path& folder) {
+    const int file = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (file >= 0) ::close(file);
+    return file >= 0;
+}
+
+// A process can be killed at any moment.
+TEST(WriteWholeFile, HasNoNameUntilItIsWhole) {
+    const TemporaryFolder folder;
+    if (!hasNamelessFiles(folder.path())) GTEST_SKIP() << "this file system has no nameless files";
+    const fs::path file = folder.write("result.csv", "old");
+    writeWholeFile(file, [&](std::ostream& stream) {
+        stream << "half of the new content" << std::flush;
+        EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+        EXPECT_EQ(contentOf(file), "old");
+    });
+    EXPECT_EQ(contentOf(file), "half of the new content");
+}
+
+TEST(WriteWholeFile, TakesTheNameThatAKilledProcessLeft) {
+    const TemporaryFolder folder;
+    folder.write(".lambert-" + std::to_string(::getpid()) + "-0.tmp", "left");
+    writeWholeFile(folder.path() / "result.csv", "new");
+    EXPECT_EQ(contentOf(folder.path() / "result.csv"), "new");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+}
+
+TEST(WriteWholeFile, HasThePermissionsOfAnyNewFile) {
+    const TemporaryFolder folder;
+    const ::mode_t before = ::umask(027);
+    writeWholeFile(folder.path() / "result.csv", "new");
+    ::umask(before);
+    EXPECT_EQ(fs::status(folder.path() / "result.csv").permissions(), static_cast<fs::perms>(0640));
 }
 
 TEST(WriteWholeFiles, ReplacesAllOrNone) {
