@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <optional>
 
 namespace lambert {
 
@@ -17,8 +19,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t kMostNameless = 256; ///< at a time: they stay open, and 1024 open files are allowed as a rule
+
 [[noreturn]] void fail(const fs::path& path, int error) {
     throw SystemError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(error)));
+}
+
+void writePiece(std::ostream& file, std::string_view content) {
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
 }
 
 /// A file open for writing that has no name: it vanishes with this process, however that ends. Not every file system has them.
@@ -51,8 +59,10 @@ class Replacement {
 public:
     /// `number` tells apart what one process replaces at one time. The temporary name is short, as the target's own name may
     /// be as long as a name can be.
-    explicit Replacement(const fs::path& path, std::size_t number = 0)
-        : path_(path), temporary_(path.parent_path() / fmt::format(".lambert-{}-{}.tmp", ::getpid(), number)) {}
+    Replacement(const fs::path& path, std::size_t number)
+        : path_(path),
+          number_(number),
+          temporary_(path.parent_path() / fmt::format(".lambert-{}-{}.tmp", ::getpid(), number)) {}
     ~Replacement() {
         std::error_code ignored;
         if (!committed_) fs::remove(temporary_, ignored);
@@ -60,15 +70,18 @@ public:
     Replacement(const Replacement&) = delete;
     Replacement& operator=(const Replacement&) = delete;
 
-    void write(const std::function<void(std::ostream&)>& content) const {
-        const NamelessFile file(path_.parent_path());
-        const bool nameless = file.usable();
-        writeTo(nameless ? file.path() : temporary_, content);
-        if (nameless && !file.giveName(temporary_)) fail(path_, errno);
+    void write(const std::function<void(std::ostream&)>& content) {
+        if (number_ < kMostNameless && !nameless_.emplace(path_.parent_path()).usable()) nameless_.reset();
+        writeTo(nameless_ ? nameless_->path() : temporary_, content);
     }
 
-    void write(std::string_view content) const {
-        write([&](std::ostream& file) { file.write(content.data(), static_cast<std::streamsize>(content.size())); });
+    void write(std::string_view content) {
+        write([&](std::ostream& file) { writePiece(file, content); });
+    }
+
+    void giveName() {
+        if (nameless_ && !nameless_->giveName(temporary_)) fail(path_, errno);
+        nameless_.reset();
     }
 
     void commit() {
@@ -95,35 +108,35 @@ private:
         if (result != 0) fail(path_, error);
     }
 
-    fs::path path_, temporary_;
+    fs::path path_;
+    std::size_t number_;
+    fs::path temporary_;
+    std::optional<NamelessFile> nameless_;
     bool committed_ = false;
 };
+
+/// All or none. A name is given and taken when everything is on the disk: a moment, whatever the sizes.
+template <class File>
+void writeAll(std::span<const File> files) {
+    std::deque<Replacement> replacements;
+    for (const File& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
+    for (Replacement& replacement : replacements) replacement.giveName();
+    for (Replacement& replacement : replacements) replacement.commit();
+}
 
 } // namespace
 
 void writeWholeFile(const fs::path& path, std::string_view content) {
-    Replacement replacement(path);
-    replacement.write(content);
-    replacement.commit();
+    writeWholeFile(path, [&](std::ostream& file) { writePiece(file, content); });
 }
 
 void writeWholeFile(const fs::path& path, const std::function<void(std::ostream&)>& content) {
-    Replacement replacement(path);
-    replacement.write(content);
-    replacement.commit();
+    writeWholeFiles(std::array{FileStream{path, content}});
 }
 
-void writeWholeFiles(std::span<const FileContent> files) {
-    std::deque<Replacement> replacements;
-    for (const FileContent& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
-    for (Replacement& replacement : replacements) replacement.commit();
-}
+void writeWholeFiles(std::span<const FileContent> files) { writeAll(files); }
 
-void writeWholeFiles(std::span<const FileStream> files) {
-    std::deque<Replacement> replacements;
-    for (const FileStream& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
-    for (Replacement& replacement : replacements) replacement.commit();
-}
+void writeWholeFiles(std::span<const FileStream> files) { writeAll(files); }
 
 void requireWritable(const fs::path& path) {
     std::error_code error;

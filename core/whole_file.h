@@ -22,8 +22,8 @@ struct FileContent {
     std::string content;
 };
 
-/// The same for files that belong together (of different names): all are on the disk under temporary names before the first
-/// old one is replaced, so that a disk that fills up leaves every old file as it was.
+/// The same for files that belong together (of different names): all are on the disk before the first old one is replaced, so
+/// that a disk that fills up leaves every old file as it was.
 void writeWholeFiles(std::span<const FileContent> files);
 
 struct FileStream {
