@@ -108,7 +108,7 @@ struct FlatOutline {
     std::vector<Line> contacts; ///< indices into the above
 };
 
-FlatOutline flatten(const FaceOutline& outline, const std::vector<glm::vec3>& positions) {
+FlatOutline flatten(const FaceOutline& outline, std::span<const glm::vec3> positions) {
     FlatOutline flat;
     flat.vertices = outline.border;
     std::vector<std::uint32_t> contactVertices;
@@ -141,7 +141,7 @@ FlatOutline flatten(const FaceOutline& outline, const std::vector<glm::vec3>& po
 } // namespace
 
 std::vector<Corners> gridFace(const std::array<std::vector<std::uint32_t>, 4>& sides,
-                              std::vector<glm::vec3>& positions) {
+                              std::span<const glm::vec3> positions, std::vector<glm::vec3>& added) {
     const std::size_t columns = sides[0].size() - 1;
     const std::size_t rows = sides[1].size() - 1;
     std::array<glm::dvec3, 4> corner;
@@ -151,7 +151,7 @@ std::vector<Corners> gridFace(const std::array<std::vector<std::uint32_t>, 4>& s
         for (std::size_t i = 1; i < columns; ++i) {
             const double s = static_cast<double>(i) / static_cast<double>(columns);
             const double t = static_cast<double>(j) / static_cast<double>(rows);
-            positions.emplace_back(glm::mix(glm::mix(corner[0], corner[1], s), glm::mix(corner[3], corner[2], s), t));
+            added.emplace_back(glm::mix(glm::mix(corner[0], corner[1], s), glm::mix(corner[3], corner[2], s), t));
         }
     }
     const auto vertex = [&](std::size_t i, std::size_t j) {
@@ -170,7 +170,8 @@ std::vector<Corners> gridFace(const std::array<std::vector<std::uint32_t>, 4>& s
 }
 
 std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, double spacing,
-                                                    std::vector<glm::vec3>& positions) {
+                                                    std::span<const glm::vec3> positions,
+                                                    std::vector<glm::vec3>& added) {
     FlatOutline flat = flatten(outline, positions);
     const std::size_t borderCount = outline.border.size();
     const std::size_t lineCount = flat.points.size();
@@ -190,18 +191,25 @@ std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, 
     const double area = signedArea(border);
     if (!(std::abs(covered - area) <= 1e-6 * area)) return std::nullopt;
 
+    // Vertices are numbered as in `flat` until the faces are done.
+    std::vector<glm::vec3> at;
+    at.reserve(flat.points.size());
+    for (const std::uint32_t vertex : flat.vertices) at.push_back(positions[vertex]);
     for (std::size_t i = lineCount; i < flat.points.size(); ++i) {
-        flat.vertices.push_back(static_cast<std::uint32_t>(positions.size()));
-        positions.push_back(outline.frame.lift(flat.points[i]));
+        flat.vertices.push_back(static_cast<std::uint32_t>(positions.size() + i - lineCount));
+        at.push_back(outline.frame.lift(flat.points[i]));
     }
     std::vector<Corners> faces;
     faces.reserve(triangles->size());
-    for (const auto& [a, b, c] : *triangles)
-        faces.push_back({flat.vertices[a], flat.vertices[b], flat.vertices[c], kNone});
+    for (const auto& [a, b, c] : *triangles) faces.push_back({a, b, c, kNone});
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fixed;
-    for (const auto& [a, b] : outline.contacts) fixed.push_back(edgeKey(a, b));
+    for (const auto& [a, b] : flat.contacts) fixed.push_back(edgeKey(a, b));
     std::sort(fixed.begin(), fixed.end());
-    pairTriangles(faces, std::vector<std::uint32_t>(faces.size(), 0), positions, fixed);
+    pairTriangles(faces, std::vector<std::uint32_t>(faces.size(), 0), at, fixed);
+    for (Corners& face : faces)
+        for (std::uint32_t& vertex : face)
+            if (vertex != kNone) vertex = flat.vertices[vertex];
+    added.assign(at.begin() + static_cast<std::ptrdiff_t>(lineCount), at.end());
     return faces;
 }
 

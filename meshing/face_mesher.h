@@ -20,14 +20,17 @@ struct FaceOutline {
 };
 
 /// Grid of a planar quad: `sides[k]` runs from corner k to corner k + 1, opposite sides have equally many vertices.
-/// Appends inner vertices to `positions`. Returns columns × rows quads, row by row along side 0.
+/// Appends inner vertices, numbered on from `positions`, to `added`, which is empty. Returns columns × rows quads, row by row
+/// along side 0.
 std::vector<Corners> gridFace(const std::array<std::vector<std::uint32_t>, 4>& sides,
-                              std::vector<glm::vec3>& positions);
+                              std::span<const glm::vec3> positions, std::vector<glm::vec3>& added);
 
 /// Any other face: its border stays, a square lattice of `spacing` metres fills the inside, and a constrained Delaunay
-/// triangulation joins the two, its triangles paired to quads where that is good. Appends inner vertices to `positions`.
-/// Nothing if the border or the contacts cross themselves or each other (positions are then unchanged).
+/// triangulation joins the two, its triangles paired to quads where that is good. Appends inner vertices, numbered on from
+/// `positions`, to `added`, which is empty. Nothing if the border or the contacts cross themselves or each other (`added`
+/// then stays empty).
 std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, double spacing,
-                                                    std::vector<glm::vec3>& positions);
+                                                    std::span<const glm::vec3> positions,
+                                                    std::vector<glm::vec3>& added);
 
 } // namespace lambert

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshing/patch_locator.h"
 #include "scene/scene.h"
 
 #include <glm/vec2.hpp>
@@ -8,9 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace lambert {
@@ -50,10 +49,8 @@ public:
     /// convex and planar); both at most 65535. A triangle has one patch.
     void addGrid(const Scene& scene, const Polygon& polygon, std::uint32_t first, std::uint32_t columns,
                  std::uint32_t rows);
-    /// Any other polygon: `corners` are those of its patches (convex; a triangle ends in kNone), the first of which has
-    /// the index `first`.
-    void addPatches(const Scene& scene, const Polygon& polygon, std::uint32_t first,
-                    std::span<const std::array<std::uint32_t, 4>> corners, std::span<const glm::vec3> positions);
+    /// Any other polygon, whose patches the locator knows; the first has the index `first`.
+    void addLocated(const PatchLocator& locator, std::uint32_t first);
     /// Says where the patches of the polygon's second side begin.
     void setBack(std::uint32_t polygon, std::uint32_t firstBack) {
         entries_[polygon].firstBack = firstBack;
@@ -64,7 +61,7 @@ private:
     struct Entry {
         std::uint32_t first = 0;
         std::uint32_t firstBack = kNone;
-        std::uint32_t locator = kNone; ///< into locators_; kNone: a grid
+        std::uint32_t locator = kNone; ///< into grids_; kNone: a grid
         std::uint16_t columns = 1, rows = 1;
         glm::vec2 skew{0.0F}; ///< see gridPoint
     };
@@ -92,45 +89,27 @@ private:
     }
     static void gridPatches(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]);
 
-    /// Fine uniform grid over the polygon in a plane frame; a cell holds a code that tells its patch, see decode.
-    struct Locator {
-        std::array<glm::vec2, 2> origin, axisU, axisV; ///< chart → grid, for u + v <= 1 and for the rest of a quad
-        std::uint32_t columns, rows;
-        std::uint32_t firstCell;   ///< into cells_
-        std::uint32_t firstCorner; ///< into gridCorners_, 4 per patch
-    };
-
     std::uint32_t locate(const Entry& entry, float u, float v) const;
-    static std::uint32_t cellAt(const Locator& locator, glm::vec2 point) {
-        const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), locator.columns - 1);
-        const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), locator.rows - 1);
-        return locator.firstCell + row * locator.columns + column;
+    static std::uint32_t cellAt(const CellGrid& grid, glm::vec2 point) {
+        const auto column = std::min(static_cast<std::uint32_t>(std::max(point.x, 0.0F)), grid.columns - 1);
+        const auto row = std::min(static_cast<std::uint32_t>(std::max(point.y, 0.0F)), grid.rows - 1);
+        return grid.firstCell + row * grid.columns + column;
     }
-    static glm::vec2 cellPoint(const Locator& locator, float u, float v) {
+    static glm::vec2 cellPoint(const CellGrid& grid, float u, float v) {
         const std::size_t half = u + v <= 1.0F ? 0 : 1;
-        return locator.origin[half] + u * locator.axisU[half] + v * locator.axisV[half];
+        return grid.origin[half] + u * grid.axisU[half] + v * grid.axisV[half];
     }
-    /// An edge between two patches, for the cells that no other crosses.
-    struct Split {
-        glm::vec2 normal;
-        float offset;
-        std::uint32_t inside, outside; ///< patches where normal · point >= offset, and where not
-    };
-
-    /// Codes of the edges between patches, the smaller one first.
-    using KnownSplits = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
-
-    std::uint32_t codeFor(const Locator& locator, std::span<const std::uint32_t> patches, KnownSplits& known);
-    std::uint32_t decode(const Locator& locator, std::uint32_t code, glm::vec2 point) const {
+    std::uint32_t decode(const CellGrid& grid, std::uint32_t code, glm::vec2 point) const {
         if (code < kSplit) return code;
-        if (code >= kSearch) return search(locator, code - kSearch, point);
-        const Split& split = splits_[code - kSplit];
+        if (code >= kSearch) return search(grid, code - kSearch, point);
+        const CellSplit& split = splits_[code - kSplit];
         return split.normal.x * point.x + split.normal.y * point.y >= split.offset ? split.inside : split.outside;
     }
-    std::uint32_t search(const Locator& locator, std::uint32_t firstCandidate, glm::vec2 point) const;
+    std::uint32_t search(const CellGrid& grid, std::uint32_t firstCandidate, glm::vec2 point) const;
     void locate16(const Entry& entry, const float (&u)[16], const float (&v)[16], std::uint32_t (&patch)[16]) const;
-    static bool decode16(const std::uint32_t* cells, const Split* splits, const float (&x)[16], const float (&y)[16],
-                         const std::uint32_t (&cell)[16], std::uint32_t (&code)[16], std::uint32_t (&patch)[16]);
+    static bool decode16(const std::uint32_t* cells, const CellSplit* splits, const float (&x)[16],
+                         const float (&y)[16], const std::uint32_t (&cell)[16], std::uint32_t (&code)[16],
+                         std::uint32_t (&patch)[16]);
     /// A locator's or a grid's half, for hits on different polygons.
     struct Chart {
         glm::vec2 origin{0.0F}, axisU{0.0F}, axisV{0.0F}; ///< chart → cells, or → patches of a grid
@@ -143,7 +122,7 @@ private:
     /// For hits on any polygons, at most kSome.
     void findSome(const std::uint32_t* polygon, const float* u, const float* v, std::size_t count,
                   std::uint32_t* patch) const;
-    static void cells16(const Locator& locator, const float (&u)[16], const float (&v)[16], float (&x)[16],
+    static void cells16(const CellGrid& grid, const float (&u)[16], const float (&v)[16], float (&x)[16],
                         float (&y)[16], std::uint32_t (&cell)[16]);
 
     std::vector<Entry> entries_;
@@ -151,13 +130,11 @@ private:
     static constexpr std::uint32_t kCharts = 0x80000000;
     std::vector<Chart> charts_{Chart{}}; ///< in pairs but for the first, which stands for polygons that have none
     bool hasBacks_ = false;
-    std::vector<Locator> locators_;
-    static constexpr std::uint32_t kSplit = 0x80000000;  ///< codes from here: kSplit + index into splits_
-    static constexpr std::uint32_t kSearch = 0xC0000000; ///< codes from here: kSearch + index into candidates_
-    std::vector<std::uint32_t> cells_{kSearch};          ///< codes; below kSplit: the patch, relative to the first
-    std::vector<Split> splits_{Split{}};                 ///< the first for cells that have none
-    std::vector<std::uint32_t> candidates_;              ///< per searched cell: how many, then the patches
-    std::vector<glm::vec2> gridCorners_;                 ///< 4 per patch, in cells; a triangle repeats its last corner
+    std::vector<CellGrid> grids_;
+    std::vector<std::uint32_t> cells_{kSearch};  ///< codes; below kSplit: the patch, relative to the first
+    std::vector<CellSplit> splits_{CellSplit{}}; ///< the first for cells that have none
+    std::vector<std::uint32_t> candidates_;      ///< per searched cell: how many, then the patches
+    std::vector<glm::vec2> gridCorners_;         ///< 4 per patch, in cells; a triangle repeats its last corner
 };
 
 } // namespace lambert

@@ -2,6 +2,7 @@
 #include "sample_scenes.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -74,6 +75,20 @@ TEST_P(PatchMeshOf, DividesBordersToThePatchLength) {
                     EXPECT_LE(glm::distance(glm::dvec3(a), glm::dvec3(b)), length * (1.0 + 1.1e-3));
                 }
             }
+    }
+}
+
+TEST_P(PatchMeshOf, IsTheSameOnAnyNumberOfThreads) {
+    const Scene& scene = GetParam().scene;
+    for (const double length : lengths(scene)) {
+        setThreadCount(1);
+        const PatchMesh one = meshWithLength(scene, length);
+        setThreadCount(3);
+        const PatchMesh three = meshWithLength(scene, length);
+        setThreadCount(0);
+        EXPECT_EQ(one.positions, three.positions);
+        EXPECT_EQ(one.corners, three.corners);
+        EXPECT_EQ(one.polygon, three.polygon);
     }
 }
 
