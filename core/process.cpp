@@ -36,13 +36,15 @@ std::uint64_t peakMemoryBytes() {
 }
 
 bool resetPeakMemory() {
-    ::malloc_trim(0);
+    returnFreedMemory();
     std::ofstream references("/proc/self/clear_refs");
     references << "5" << std::flush; // proc(5): resets VmHWM to what is resident now
     return references.good();
 }
 
 void returnLargeBlocks() { ::mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+
+void returnFreedMemory() { ::malloc_trim(0); }
 
 double processorSeconds() {
     rusage usage{};

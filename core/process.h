@@ -18,6 +18,9 @@ bool resetPeakMemory();
 /// to the largest block ever freed, and memory then peaks a fifth higher.
 void returnLargeBlocks();
 
+/// Gives back to the system what was freed in small pieces, of all threads. Takes milliseconds: for after work that used much of it.
+void returnFreedMemory();
+
 /// Processor time that this process has taken since its start, all threads and the system's work for them, in seconds.
 double processorSeconds();
 

@@ -26,7 +26,7 @@ namespace {
 constexpr double kMostPatches = 2e8;
 constexpr double kLongestOverEqual = 2.0; ///< of a patch's length to that of as many equal squares
 constexpr double kMoreThanExpected = 1.3; ///< room that is not used stays with the system
-constexpr std::size_t kPolygonsAtOnce = 4096, kPolygonsPerChunk = 16;
+constexpr double kDividedAtOnce = 65536;  ///< patches, so that they are hardly in memory twice
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
 /// What stands on a polygon, or null.
@@ -51,18 +51,29 @@ public:
         report_.patchLength = length;
         builder_.emplace(scene_, static_cast<std::size_t>(kMoreThanExpected * expected), report_);
         const EdgeDivision edges(scene_, index_, length, builder_->positions());
-        for (std::size_t first = 0; first < scene_.polygons.size(); first += kPolygonsAtOnce)
-            divideSome(first, std::min(kPolygonsAtOnce, scene_.polygons.size() - first), edges);
+        for (std::size_t first = 0; first < scene_.polygons.size();) {
+            const std::size_t count = someFrom(first);
+            divideSome(first, count, edges);
+            first += count;
+        }
     }
 
     std::size_t patchCount() const { return builder_->patchCount(); }
     PatchMesh finish() { return builder_->finish(progress_); }
 
 private:
+    /// How many polygons make about kDividedAtOnce patches.
+    std::size_t someFrom(std::size_t first) const {
+        std::size_t end = first;
+        for (double patches = 0.0; end < scene_.polygons.size() && patches < kDividedAtOnce; ++end)
+            patches += 1.0 + polygonArea(scene_, scene_.polygons[end]) / (report_.patchLength * report_.patchLength);
+        return end - first;
+    }
+
     void divideSome(std::size_t first, std::size_t count, const EdgeDivision& edges) {
         const std::vector<glm::vec3>& positions = builder_->positions();
         divided_.resize(count);
-        parallelFor(count, kPolygonsPerChunk, [&](std::size_t begin, std::size_t end, int) {
+        parallelFor(count, 1, [&](std::size_t begin, std::size_t end, int) {
             progress_.throwIfCancelled();
             for (std::size_t k = begin; k < end; ++k)
                 divided_[k] = dividePolygon(scene_, scene_.polygons[first + k], edges,

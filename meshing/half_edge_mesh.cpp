@@ -1,5 +1,6 @@
 #include "meshing/half_edge_mesh.h"
 
+#include "core/process.h"
 #include "meshing/disjoint_sets.h"
 #include "meshing/pair_triangles.h"
 
@@ -120,6 +121,8 @@ HalfEdgeMesh buildHalfEdgeMesh(const PatchMesh& mesh, float creaseAngle) {
     }
 
     ::omerr().disable(); // it reports each refused face; they are counted instead
+    // A bake has most in memory here, and the sets of corners may have lain in gaps that earlier work left.
+    returnFreedMemory();
     // Growing, the edges would be in memory twice; there are never more of them than corners.
     topology.reserve(topology.n_vertices(), 4 * mesh.size(), mesh.size());
     std::vector<Topology::VertexHandle> face;

@@ -14,7 +14,6 @@ namespace lambert {
 namespace {
 
 constexpr std::size_t kLocatedAtOnce = 65536; ///< patches, so that what finds them is hardly in memory twice
-constexpr std::size_t kLocatorsPerChunk = 16;
 
 } // namespace
 
@@ -77,7 +76,7 @@ void PatchMeshBuilder::addLookup(Progress& progress) {
         for (std::size_t patches = 0; end < divisions_.size() && patches < kLocatedAtOnce; ++end)
             patches += patchesWithoutGrid(end);
         locators.resize(end - begin);
-        parallelFor(locators.size(), kLocatorsPerChunk, [&](std::size_t from, std::size_t to, int) {
+        parallelFor(locators.size(), 1, [&](std::size_t from, std::size_t to, int) {
             progress.throwIfCancelled();
             for (std::size_t k = from; k < to; ++k)
                 if (const std::size_t patches = patchesWithoutGrid(begin + k); patches > 0)
