@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "meshing/mesh_report.h"
 #include "meshing/patch_mesh.h"
 
 #include <cstddef>
@@ -19,15 +20,6 @@ struct MeshOptions {
 /// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many; these
 /// numbers times `refinement`.
 std::size_t defaultPatches(const Scene& scene, double refinement = 1.0);
-
-struct MeshReport {
-    double patchLength = 0.0;               //!< the length used, metres; infinite where nothing was refined
-    std::size_t undividedPolygons = 0;      //!< could not be divided cleanly, kept whole (T-vertices remain)
-    double undividedArea = 0.0;             //!< of these, m²
-    std::size_t degeneratePatches = 0;      //!< dropped: no area in single precision
-    std::size_t contactPolygons = 0;        //!< divided along contact lines
-    std::size_t ignoredContactPolygons = 0; //!< their contact lines cross each other
-};
 
 /// Divides a prepared scene (see prepareScene) into patches.
 PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress,

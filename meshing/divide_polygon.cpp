@@ -79,7 +79,7 @@ DividedPolygon dividePolygon(const Scene& scene, const Polygon& polygon, const E
     else
         result = keptWhole(scene, polygon);
     result.undivided = !faces;
-    result.divided = hasContacts && !contactsIgnored;
+    result.contactsFollowed = hasContacts && !contactsIgnored;
     result.contactsIgnored = contactsIgnored;
     return result;
 }

@@ -20,8 +20,8 @@ struct DividedPolygon {
     std::size_t rows = 0;
     std::vector<std::uint32_t> border; //!< of a polygon that only blocks light
     bool undivided = false;            //!< could not be divided cleanly, kept whole
-    bool divided = false;              //!< along its contact lines
-    bool contactsIgnored = false;      //!< they cross each other
+    bool contactsFollowed = false;     //!< divided along its contact lines
+    bool contactsIgnored = false;      //!< its contact lines cross each other
 };
 
 /// Divides a polygon into patches about `length` metres long, which end at its divided edges; `contact`, if not null, tells

@@ -50,7 +50,7 @@ void PatchMeshBuilder::add(DividedPolygon divided, std::size_t known) {
                               isGrid ? static_cast<std::uint32_t>(divided.rows) : 0});
         if (polygon.backMaterial != kNone) backs_ += patches;
     }
-    report_.contactPolygons += divided.divided ? 1 : 0;
+    report_.contactPolygons += divided.contactsFollowed ? 1 : 0;
     report_.ignoredContactPolygons += divided.contactsIgnored ? 1 : 0;
     if (divided.undivided) {
         ++report_.undividedPolygons;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "meshing/build_patch_mesh.h"
 #include "meshing/divide_polygon.h"
+#include "meshing/mesh_report.h"
 #include "meshing/patch_mesh.h"
 #include "scene/scene.h"
 
