@@ -8,8 +8,8 @@
 /// The content of baked files, written piece by piece. What each holds is said in write_baked.h.
 namespace lambert {
 
-/// A glTF 2.0 asset without faces that are one hole: a GLB container if `binary`, else JSON with the buffer as a data URI. Throws SystemError with the name
-/// `file` above 2^32 bytes.
+/// A glTF 2.0 asset without faces that are one hole: a GLB container if `binary`, else JSON with the buffer as a data URI.
+/// Throws SystemError with the name `file` above 2^32 bytes.
 void encodeGltf(const BakedMesh& mesh, const BakeOutputOptions& options, bool binary, const std::string& file,
                 std::ostream& stream);
 

@@ -33,6 +33,10 @@ std::vector<std::string> namesIn(const fs::path& folder) {
     return names;
 }
 
+std::string temporaryName(std::size_t number) {
+    return ".lambert-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp";
+}
+
 std::string failureOf(const std::function<void()>& action) {
     try {
         action();
@@ -70,22 +74,42 @@ bool hasNamelessFiles(const fs::path& folder) {
     return file >= 0;
 }
 
-// A process can be killed at any moment.
+// A process can be killed at any moment: then the old content is still there, and beside it nothing, or on file systems that
+// know only files with names the temporary one.
 TEST(WriteWholeFile, HasNoNameUntilItIsWhole) {
     const TemporaryFolder folder;
-    if (!hasNamelessFiles(folder.path())) GTEST_SKIP() << "this file system has no nameless files";
     const fs::path file = folder.write("result.csv", "old");
+    std::vector<std::string> expected{"result.csv"};
+    if (!hasNamelessFiles(folder.path())) expected.insert(expected.begin(), temporaryName(0));
     writeWholeFile(file, [&](std::ostream& stream) {
         stream << "half of the new content" << std::flush;
-        EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+        EXPECT_EQ(namesIn(folder.path()), expected);
         EXPECT_EQ(contentOf(file), "old");
     });
     EXPECT_EQ(contentOf(file), "half of the new content");
+    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+}
+
+// More files at a time than are kept open without names: the last ones have temporary names, of which none is left.
+TEST(WriteWholeFiles, AlsoWithTemporaryNames) {
+    const TemporaryFolder folder;
+    std::vector<FileStream> files;
+    std::vector<std::string> temporary;
+    for (std::size_t k = 0; k < 300; ++k)
+        files.push_back({folder.path() / std::to_string(k), [&, k](std::ostream& stream) {
+                             stream << k;
+                             for (const std::string& name : namesIn(folder.path()))
+                                 if (k == 299 && name == temporaryName(k)) temporary.push_back(name);
+                         }});
+    writeWholeFiles(files);
+    EXPECT_EQ(temporary, std::vector<std::string>{temporaryName(299)});
+    EXPECT_EQ(namesIn(folder.path()).size(), 300U);
+    for (std::size_t k = 0; k < 300; ++k) EXPECT_EQ(contentOf(folder.path() / std::to_string(k)), std::to_string(k));
 }
 
 TEST(WriteWholeFile, TakesTheNameThatAKilledProcessLeft) {
     const TemporaryFolder folder;
-    folder.write(".lambert-" + std::to_string(::getpid()) + "-0.tmp", "left");
+    folder.write(temporaryName(0), "left");
     writeWholeFile(folder.path() / "result.csv", "new");
     EXPECT_EQ(contentOf(folder.path() / "result.csv"), "new");
     EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});

@@ -49,27 +49,41 @@ protected:
     const Scene& scene() const { return GetParam().scene; }
 };
 
+/// That the patches found at random points of each polygon contain them.
+void expectFindsPatches(const Scene& scene, const PatchMesh& mesh, int pointsPerPolygon, std::mt19937& random) {
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        for (int k = 0; k < pointsPerPolygon; ++k) {
+            const auto [u, v] = randomChartPoint(scene.polygons[i], random);
+            const std::uint32_t patch = mesh.lookup.patchAt(i, u, v);
+            ASSERT_LT(patch, mesh.frontCount);
+            ASSERT_EQ(mesh.polygon[patch], i);
+            // The lookup computes in float, in units of the polygon, of which a patch is a small part.
+            ASSERT_LE(distanceOutside(mesh, patch, polygonPoint(scene, i, u, v)),
+                      1e-4 * longestEdge(mesh, patch) + 4.0 * coordinateRounding(scene))
+                << "polygon " << i << " at " << u << ", " << v;
+        }
+    }
+}
+
 TEST_P(PatchLookupOf, FindsThePatchThatContainsThePoint) {
     SCOPED_TRACE("seed 1");
     std::mt19937 random(1);
-    const int pointsPerPolygon = scene().polygons.size() < 20 ? 4000 : 200;
-    double worst = 0.0;
-    for (const PatchMesh& mesh : meshes()) {
-        for (std::uint32_t i = 0; i < scene().polygons.size(); ++i) {
-            for (int k = 0; k < pointsPerPolygon; ++k) {
-                const auto [u, v] = randomChartPoint(scene().polygons[i], random);
-                const std::uint32_t patch = mesh.lookup.patchAt(i, u, v);
-                ASSERT_LT(patch, mesh.frontCount);
-                ASSERT_EQ(mesh.polygon[patch], i);
-                const double outside = distanceOutside(mesh, patch, polygonPoint(scene(), i, u, v));
-                // The lookup computes in float, in units of the polygon, of which a patch is a small part.
-                ASSERT_LE(outside, 1e-4 * longestEdge(mesh, patch) + 4.0 * coordinateRounding(scene()))
-                    << "polygon " << i << " at " << u << ", " << v;
-                worst = std::max(worst, outside / longestEdge(mesh, patch));
-            }
-        }
-    }
-    RecordProperty("worst_distance_outside", std::to_string(worst));
+    for (const PatchMesh& mesh : meshes())
+        expectFindsPatches(scene(), mesh, scene().polygons.size() < 20 ? 4000 : 200, random);
+}
+
+// More than are divided, and more without a grid than are located, at a time.
+TEST(PatchLookup, FindsThePatchesOfALargeMesh) {
+    SCOPED_TRACE("seed 1");
+    std::mt19937 random(1);
+    const Scene scene = dataScene("table_room.gltf");
+    Progress progress;
+    MeshOptions options;
+    options.patches = 400'000;
+    const PatchMesh mesh = buildPatchMesh(scene, options, progress);
+    EXPECT_GT(mesh.size(), 360'000U);
+    expectSoundMesh(scene, mesh);
+    expectFindsPatches(scene, mesh, 100, random);
 }
 
 TEST_P(PatchLookupOf, Answers16AtOnceAsOneByOne) {
