@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/packet_width.h"
 #include "scene/scene.h"
 
 #include <embree3/rtcore.h>
@@ -13,7 +14,7 @@ class BareEmbree {
 public:
     /// `filter` sees every hit, if it is given.
     explicit BareEmbree(const Scene& scene, RTCFilterFunctionN filter = nullptr)
-        : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+        : device_(newEmbreeDevice()), scene_(rtcNewScene(device_)) {
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         std::size_t quads = 0;

@@ -11,7 +11,7 @@
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
 #include "formfactors/global_lines.h"
-#include "scene/embree_scene.h"
+#include "scene/packet_width.h"
 
 namespace lambert {
 namespace {
@@ -46,7 +46,7 @@ std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
     alignas(64) RTCRay16 rays;
     std::size_t hits = 0;
     for (const LinePacket& packet : packets) {
-        beginRays(rays, 1.0F);
+        beginRays(packet.active, 1.0F, rays);
         std::copy_n(packet.originX, 16, rays.org_x);
         std::copy_n(packet.originY, 16, rays.org_y);
         std::copy_n(packet.originZ, 16, rays.org_z);

@@ -2,15 +2,19 @@
 ///
 /// "Bare" gets its directions from memory and throws the hits away; a hemicube row also makes the directions, finds the
 /// patches and sums the delta form factors.
+///
+/// "widths" traces the bare rays in packets of 16, 8 and 4: LAMBERT_EMBREE=isa=avx2 lambert_benchmarks --benchmark_filter=widths
 
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
-#include "scene/embree_scene.h"
+#include "scene/packet_width.h"
 #include "solver/jacobi.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <numeric>
 
@@ -20,21 +24,22 @@ namespace {
 constexpr int kResolution = 128;
 
 /// Traces the packets; returns how many rays hit.
-std::size_t trace(RTCScene scene, const glm::vec3& origin, const std::vector<RayPacket>& packets) {
+std::size_t trace(RTCScene scene, const glm::vec3& origin, const std::vector<RayPacket>& packets,
+                  PacketWidth width = PacketWidth::Sixteen) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     alignas(64) RTCRayHit16 rays;
     std::size_t hits = 0;
     for (const RayPacket& packet : packets) {
-        beginRays(rays);
+        beginRays(packet.active, rays);
         std::fill_n(rays.ray.org_x, 16, origin.x);
         std::fill_n(rays.ray.org_y, 16, origin.y);
         std::fill_n(rays.ray.org_z, 16, origin.z);
         std::copy_n(packet.directionX, 16, rays.ray.dir_x);
         std::copy_n(packet.directionY, 16, rays.ray.dir_y);
         std::copy_n(packet.directionZ, 16, rays.ray.dir_z);
-        rtcIntersect16(packet.active, scene, &context, &rays);
+        intersectPacket(width, packet.active, scene, context, rays);
         for (int lane = 0; lane < 16; ++lane) hits += rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
     }
     return hits;
@@ -61,6 +66,33 @@ void compareHemicube(benchmark::State& state, const BenchmarkScene& scene) {
             traced += hemicube.raysPerRow();
         });
     state.counters["hit"] = static_cast<double>(hits) / static_cast<double>(traced);
+}
+
+/// Millions of rays a second for each width, the median of nine turns.
+void compareWidths(benchmark::State& state, const BenchmarkScene& scene) {
+    const BareEmbree bare(scene.scene);
+    const Hemicube hemicube(scene.mesh, scene.rays, {.resolution = kResolution});
+    constexpr std::array kWidths{PacketWidth::Sixteen, PacketWidth::Eight, PacketWidth::Four};
+    std::array<std::vector<double>, kWidths.size()> rates;
+    for (auto _ : state) {
+        std::array<double, kWidths.size()> seconds{};
+        constexpr std::uint32_t kRows = 24;
+        for (std::uint32_t k = 0; k < kRows; ++k) {
+            const auto patch = static_cast<std::uint32_t>(k * scene.mesh.size() / kRows);
+            const std::vector<RayPacket> packets = packetsOf(hemicube, scene.mesh, patch);
+            for (std::size_t w = 0; w < kWidths.size(); ++w) {
+                CpuStopwatch watch;
+                benchmark::DoNotOptimize(trace(bare.handle(), hemicube.viewpoint(patch).origin, packets, kWidths[w]));
+                seconds[w] += watch.lap();
+            }
+        }
+        for (std::size_t w = 0; w < kWidths.size(); ++w)
+            rates[w].push_back(1e-6 * static_cast<double>(kRows * hemicube.raysPerRow()) / seconds[w]);
+    }
+    for (std::size_t w = 0; w < kWidths.size(); ++w) {
+        std::sort(rates[w].begin(), rates[w].end());
+        state.counters[std::to_string(static_cast<int>(kWidths[w]))] = rates[w][rates[w].size() / 2];
+    }
 }
 
 /// 50,000 patches: the whole matrix and Jacobi to 1e-4, and bare Embree tracing the same rays, on all threads.
@@ -99,6 +131,7 @@ void largeMatrix(benchmark::State& state) {
 const bool registered = [] {
     benchmark::RegisterBenchmark("large_matrix", largeMatrix)->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
     registerComparison("hemicube", 9, compareHemicube);
+    registerComparison("widths", 9, compareWidths);
     return true;
 }();
 

@@ -52,11 +52,8 @@ RTCGeometry triangleGeometry(RTCDevice device, const Scene& scene, std::span<con
 
 } // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters) : scale_(scaleToOne(boundsOf(scene))) {
-    device_.reset(rtcNewDevice(nullptr));
-    if (device_ == nullptr)
-        throw SystemError(
-            fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+EmbreeScene::EmbreeScene(const Scene& scene, const Filters& filters)
+    : scale_(scaleToOne(boundsOf(scene))), device_(newEmbreeDevice()), width_(nativeWidth(device_.get())) {
     embree_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(handle(), RTC_SCENE_FLAG_ROBUST); // no ray slips between two polygons
     std::vector<std::uint32_t> withHoles;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/packet_width.h"
 #include "scene/scene.h"
 
 #include <embree3/rtcore.h>
@@ -59,6 +60,8 @@ public:
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     RTCScene handle() const { return embree_.get(); }
+    /// For intersectPacket().
+    PacketWidth width() const { return width_; }
     /// What the origins of rays must be multiplied by; in the same unit are the distances of rays of unit directions.
     float scale() const { return scale_; }
     TriangleTable triangles() const { return data_[kOpaque].triangles; }
@@ -80,26 +83,9 @@ private:
     std::vector<std::uint32_t> halves_; //!< of triangles(); empty if these need none
     std::array<GeometryData, 2> data_;  //!< by GeometryId
     std::unique_ptr<RTCDeviceTy, Release> device_;
+    PacketWidth width_;
     std::unique_ptr<RTCSceneTy, Release> embree_;
 };
-
-/// All but origins and directions of rays that end after `length` of their directions and meet everything on the way.
-inline void beginRays(RTCRay16& rays, float length) {
-    for (unsigned lane = 0; lane < 16; ++lane) {
-        rays.tnear[lane] = 0.0F;
-        rays.tfar[lane] = length;
-        rays.time[lane] = 0.0F;
-        rays.mask[lane] = ~0U;
-        rays.id[lane] = lane;
-        rays.flags[lane] = 0;
-    }
-}
-
-/// The same of rays without end, and that they have not met anything.
-inline void beginRays(RTCRayHit16& rays) {
-    beginRays(rays.ray, 1e30F);
-    for (unsigned& geometry : rays.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
-}
 
 /// Whether a hit (the `lane`-th of a filter's query) lies in a hole of its polygon.
 bool liesInHole(const RTCFilterFunctionNArguments& query, unsigned lane);

@@ -168,7 +168,7 @@ void load(const LinePacket& packet, float scale, RTCRay16& rays) {
         rays.dir_y[lane] = scale * packet.directionY[lane];
         rays.dir_z[lane] = scale * packet.directionZ[lane];
     }
-    beginRays(rays, 1.0F);
+    beginRays(packet.active, 1.0F, rays);
 }
 
 Crossing crossingIn(const Row& row, int lane) {

@@ -27,7 +27,7 @@ void loadDirections(const RayPacket& packet, RTCRayHit16& rays) {
         rays.ray.dir_y[lane] = packet.directionY[lane];
         rays.ray.dir_z[lane] = packet.directionZ[lane];
     }
-    beginRays(rays);
+    beginRays(packet.active, rays);
 }
 
 LAMBERT_VECTOR_CLONES
@@ -59,7 +59,7 @@ void storePolygons(const RTCRayHit16& rays, const std::uint32_t* halves, std::ui
 /// With directions of length 1 or so: rays of very short ones lose hits.
 LAMBERT_VECTOR_CLONES
 void load(const ShadowPacket& packet, float scale, RTCRay16& rays) {
-    beginRays(rays, 1.0F);
+    beginRays(packet.active, 1.0F, rays);
     for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
         const float x = std::abs(packet.directionX[lane]);
         const float y = std::abs(packet.directionY[lane]);
@@ -126,7 +126,7 @@ struct RayCaster::Impl {
         context.flags =
             coherence == Coherence::High ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         loadDirections(packet, rays);
-        rtcIntersect16(packet.active, embree.handle(), &context, &rays);
+        intersectPacket(embree.width(), packet.active, embree.handle(), context, rays);
         store(rays, packet);
         storePolygons(rays, embree.triangles().halves, embree.firstTriangle(1), packet);
         if (anyOccluders) turnOccluders(scene, packet);
