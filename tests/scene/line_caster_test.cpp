@@ -108,11 +108,11 @@ TEST(LineCaster, FindsWhatTheRayCasterFindsHitByHit) {
             ASSERT_EQ(crossings.size(), hits.size()) << "line " << i;
             ++compared;
             for (std::size_t k = 0; k < hits.size(); ++k) {
-                EXPECT_EQ(crossings[k].polygon, hits[k].polygon);
-                EXPECT_EQ(crossings[k].front && !isOccluder(scene, scene.polygons[hits[k].polygon]), hits[k].front);
-                EXPECT_NEAR(crossings[k].distance, hits[k].distance, 1e-5F);
-                EXPECT_NEAR(crossings[k].u, hits[k].u, 1e-3F);
-                EXPECT_NEAR(crossings[k].v, hits[k].v, 1e-3F);
+                ASSERT_EQ(crossings[k].polygon, hits[k].polygon);
+                ASSERT_EQ(crossings[k].front && !isOccluder(scene, scene.polygons[hits[k].polygon]), hits[k].front);
+                ASSERT_NEAR(crossings[k].distance, hits[k].distance, 1e-5F);
+                ASSERT_NEAR(crossings[k].u, hits[k].u, 1e-3F);
+                ASSERT_NEAR(crossings[k].v, hits[k].v, 1e-3F);
                 ++met;
             }
         }
@@ -131,7 +131,7 @@ TEST(LineCaster, HolesAreNotCrossed) {
         for (const Crossing& crossing : crossingsOf(caster, chord(caster.bounds(), i))) {
             ++crossed[crossing.polygon];
             const int cell = static_cast<int>(8.0F * crossing.u) + static_cast<int>(4.0F * crossing.v);
-            EXPECT_TRUE(crossing.polygon != 1 || cell % 2 == 0);
+            ASSERT_TRUE(crossing.polygon != 1 || cell % 2 == 0);
         }
     const double radius = 0.5001 * static_cast<double>(caster.bounds().diagonal());
     for (std::size_t k = 0; k < 3; ++k) {
@@ -168,7 +168,7 @@ TEST(LineCaster, LosesAndDoublesNoLineOnEdges) {
             int wrong = 0;
             for (std::uint32_t i = 0; i < 200'000; ++i) {
                 Line line = chord(caster.bounds(), i);
-                EXPECT_TRUE(alternates(crossingsOf(caster, line), inside)) << "line " << i;
+                ASSERT_TRUE(alternates(crossingsOf(caster, line), inside)) << "line " << i;
                 const Polygon& polygon = scene.polygons[i % 6];
                 const int k = static_cast<int>(i / 6 % 4);
                 const auto t = static_cast<float>(number(i, 5));
@@ -198,8 +198,8 @@ TEST(LineCaster, MeetsFrontsBeforeBacksWhereTheyCoincide) {
                                    static_cast<float>(number(i, 3)));
             const auto crossings = crossingsOf(caster, {origin, 2.0F * (glm::vec3(1, y, z) - origin)});
             ASSERT_EQ(crossings.size(), 2U);
-            EXPECT_TRUE(crossings[0].front);
-            EXPECT_FALSE(crossings[1].front);
+            ASSERT_TRUE(crossings[0].front);
+            ASSERT_FALSE(crossings[1].front);
         }
     }
 }
@@ -210,7 +210,7 @@ TEST(LineCaster, CountsCoincidentPolygonsOnce) {
     const Material wall = greyMaterial("wall", 0.5F);
     const Scene scene = quadScene(std::array{low, wide}, std::array{wall, wall});
     const LineCaster caster(scene);
-    for (std::uint32_t i = 0; i < 2'000; ++i) EXPECT_LE(crossingsOf(caster, chord(caster.bounds(), i)).size(), 1U);
+    for (std::uint32_t i = 0; i < 2'000; ++i) ASSERT_LE(crossingsOf(caster, chord(caster.bounds(), i)).size(), 1U);
 }
 
 } // namespace

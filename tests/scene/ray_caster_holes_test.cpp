@@ -65,12 +65,12 @@ TEST_F(Sheets, LetRaysThroughExactlyWhereTheTexelIsClear) {
             const std::uint32_t expectedFromAbove = opaqueAt(x, y) ? (above ? 3U : 2U) : 0U;
             const auto down = caster.closest({{x, y, 3}, {0, 0, -1}});
             ASSERT_TRUE(down);
-            EXPECT_EQ(down->polygon, expectedFromAbove) << x << " " << y;
-            EXPECT_TRUE(down->front);
+            ASSERT_EQ(down->polygon, expectedFromAbove) << x << " " << y;
+            ASSERT_TRUE(down->front);
             const auto up = caster.closest({{x, y, 0.5F}, {0, 0, 1}});
-            EXPECT_EQ(up.has_value(), opaqueAt(x, y));
-            EXPECT_EQ(up ? up->polygon : 1U, 1U);
-            EXPECT_EQ(caster.occluded({{x, y, 3}, {0, 0, -1}, 2.5F}), opaqueAt(x, y));
+            ASSERT_EQ(up.has_value(), opaqueAt(x, y));
+            ASSERT_EQ(up ? up->polygon : 1U, 1U);
+            ASSERT_EQ(caster.occluded({{x, y, 3}, {0, 0, -1}, 2.5F}), opaqueAt(x, y));
         }
 }
 
@@ -90,7 +90,7 @@ TEST_F(Sheets, StopPacketsLikeSingleRays) {
             const glm::vec3 direction(packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]);
             const auto hit = caster.closest({origin, direction});
             const bool traced = packet.active[lane] != 0 && hit.has_value();
-            EXPECT_EQ(packet.polygon[lane], traced ? hit->polygon : kNone);
+            ASSERT_EQ(packet.polygon[lane], traced ? hit->polygon : kNone);
         }
     }
 }
@@ -124,7 +124,7 @@ TEST_F(Sheets, APacketOfShadowRaysFindsWhatSingleRaysFind) {
         }
         caster.occluded(packet);
         for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
-            EXPECT_EQ(packet.occluded[lane], lane != 3 && caster.occluded(rays[lane]));
+            ASSERT_EQ(packet.occluded[lane], lane != 3 && caster.occluded(rays[lane]));
             free += packet.occluded[lane] ? 0 : 1;
         }
     }

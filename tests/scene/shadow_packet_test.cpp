@@ -38,7 +38,7 @@ TEST(ShadowPacket, FindsWhatSingleRaysFind) {
             rays.occluded(packet);
             for (std::uint32_t lane = 0; lane < 16; ++lane) {
                 const bool expected = lane % 5 != 4 && rays.occluded(single[lane]);
-                EXPECT_EQ(packet.occluded[lane], expected) << k << " " << lane << " " << scale;
+                ASSERT_EQ(packet.occluded[lane], expected) << k << " " << lane << " " << scale;
                 occluded += expected ? 1 : 0;
             }
         }
