@@ -3,8 +3,39 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambert {
+
+double GroupFactors::rowSum(std::size_t from) const {
+    double sum = back[from] + out[from];
+    for (std::size_t to = 0; to < groups; ++to) sum += exchangeArea(from, to);
+    return mean(sum, from);
+}
+
+double GroupFactors::reciprocityError(std::size_t a, std::size_t b) const {
+    const double both = exchangeArea(a, b) + exchangeArea(b, a);
+    return both > 0.0 ? 2.0 * std::abs(exchangeArea(a, b) - exchangeArea(b, a)) / both : 0.0;
+}
+
+GroupReciprocity groupReciprocity(const GroupFactors& factors) {
+    GroupReciprocity result;
+    result.largest.assign(factors.groups, 0.0);
+    double squares = 0.0;
+    double differences = 0.0;
+    for (std::size_t a = 0; a < factors.groups; ++a) {
+        for (std::size_t b = 0; b < factors.groups; ++b) {
+            const double mean = 0.5 * (factors.exchangeArea(a, b) + factors.exchangeArea(b, a));
+            const double error = factors.reciprocityError(a, b);
+            squares += mean * mean;
+            differences += mean * mean * error * error;
+            result.largest[a] = std::max(result.largest[a], error);
+            if (error > factors.reciprocityError(result.a, result.b)) result.a = a, result.b = b;
+        }
+    }
+    if (squares > 0.0) result.rms = std::sqrt(differences / squares);
+    return result;
+}
 
 GroupFactors groupFactors(const FormFactorMatrix& matrix, std::span<const float> area,
                           std::span<const std::uint32_t> group, std::size_t groups) {

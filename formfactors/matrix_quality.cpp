@@ -94,17 +94,25 @@ MatrixQuality assessMatrix(const FormFactorMatrix& matrix, std::span<const float
     return quality;
 }
 
-ColumnClosure columnClosure(const FormFactorMatrix& matrix, std::span<const float> area) {
+std::vector<double> columnDeficit(const FormFactorMatrix& matrix, std::span<const float> area) {
     const std::size_t count = matrix.size();
-    std::vector<double> received(count, 0.0); // W
+    std::vector<double> received(count, 0.0); // Σ_i A_i F_ij
     for (std::size_t i = 0; i < count; ++i)
         matrix.visit(i, [&](std::uint32_t j, double factor) { received[j] += static_cast<double>(area[i]) * factor; });
+    for (std::size_t j = 0; j < count; ++j)
+        received[j] = static_cast<double>(area[j]) * (1.0 - matrix.back(j) - matrix.out(j)) - received[j];
+    return received;
+}
+
+ColumnClosure columnClosure(const FormFactorMatrix& matrix, std::span<const float> area) {
+    const std::size_t count = matrix.size();
+    const std::vector<double> deficit = columnDeficit(matrix, area);
     ColumnClosure result;
     result.error.resize(count);
     double squares = 0.0;
     for (std::size_t j = 0; j < count; ++j) {
-        const double error = received[j] / static_cast<double>(area[j]) + matrix.back(j) + matrix.out(j) - 1.0;
-        result.error[j] = static_cast<float>(std::abs(error));
+        const double error = std::abs(deficit[j]) / static_cast<double>(area[j]);
+        result.error[j] = static_cast<float>(error);
         squares += error * error;
     }
     if (count > 0) result.rms = std::sqrt(squares / static_cast<double>(count));

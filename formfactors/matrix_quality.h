@@ -30,6 +30,10 @@ struct MatrixQuality {
 /// `area`: #patches, m².
 MatrixQuality assessMatrix(const FormFactorMatrix& matrix, std::span<const float> area);
 
+/// A_j (1 − F_j,back − F_j,out) − Σ_i A_i F_ij, m²: what all others miss of the light of each patch j, per B_j; below 0 where they
+/// see it too large. #patches, 0 of exact factors. `area`: #patches, m². On one thread.
+std::vector<double> columnDeficit(const FormFactorMatrix& matrix, std::span<const float> area);
+
 /// What each patch receives if every surface sends 1 per m², less 1. Rows that count lines close by construction and prove
 /// nothing; their columns do.
 struct ColumnClosure {

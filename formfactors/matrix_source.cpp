@@ -3,6 +3,7 @@
 #include "core/checksum.h"
 #include "core/error.h"
 #include "formfactors/matrix_file.h"
+#include "formfactors/matrix_quality.h"
 
 #include <fmt/format.h>
 
@@ -112,6 +113,7 @@ SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, cons
     if (source.repair) {
         requireRoomForRepair(result.matrix, source.transport);
         progress.begin("repair", 0);
+        result.deficit = columnDeficit(result.matrix, mesh.area);
         result.repair = repair(result.matrix, mesh.area, weights);
         progress.end();
     }

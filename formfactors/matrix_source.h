@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace lambert {
 
@@ -25,6 +26,7 @@ struct SceneMatrix {
     FormFactorMatrix matrix;
     std::optional<TransportPlan> plan;            //!< none: from a file
     std::optional<RepairReport> repair;           //!< none: not asked for
+    std::vector<double> deficit;                  //!< columnDeficit before the repair; empty: not repaired
     std::unique_ptr<MatrixCheckpoint> checkpoint; //!< to be removed once what is made of the matrix is on the disk
 };
 

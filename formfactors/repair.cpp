@@ -91,6 +91,19 @@ ExchangeAreas merged(const FormFactorMatrix& matrix, std::span<const float> area
     return result;
 }
 
+/// Σ_j |F_ij − the new factor|, both ascending by j.
+double difference(const FormFactorMatrix& matrix, std::size_t i, const std::vector<FormFactor>& changed) {
+    double sum = 0.0;
+    auto next = changed.begin();
+    matrix.visit(i, [&](std::uint32_t j, double factor) {
+        while (next != changed.end() && next->patch < j) sum += (next++)->value;
+        const bool both = next != changed.end() && next->patch == j;
+        sum += std::abs(factor - (both ? (next++)->value : 0.0));
+    });
+    while (next != changed.end()) sum += (next++)->value;
+    return sum;
+}
+
 } // namespace
 
 RepairReport repair(FormFactorMatrix& matrix, std::span<const float> area, std::span<const double> weight,
@@ -123,20 +136,26 @@ RepairReport repair(FormFactorMatrix& matrix, std::span<const float> area, std::
         ++report.iterations;
     }
 
+    double changed = 0.0;
+    double wholeArea = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
         FormFactorRow row;
         row.back = matrix.back(i);
         row.out = matrix.out(i);
+        const auto a = static_cast<double>(area[i]);
         for (std::size_t k = exchange.begin[i]; k < exchange.begin[i + 1]; ++k) {
             const double correction = scale[i] * scale[exchange.patch[k]];
             if (exchange.value[k] > 0.0)
                 report.largestCorrection = std::max(report.largestCorrection, std::abs(correction - 1.0));
-            const double value = exchange.value[k] * correction / static_cast<double>(area[i]);
+            const double value = exchange.value[k] * correction / a;
             if (value > 0.0) row.entries.push_back({exchange.patch[k], value});
         }
         if (error(i) > options.tolerance) report.failed.push_back(i);
+        changed += a * difference(matrix, i, row.entries);
+        wholeArea += a;
         matrix.setRow(i, row);
     }
+    if (wholeArea > 0.0) report.rowChange = changed / wholeArea;
     return report;
 }
 

@@ -18,6 +18,7 @@ struct RepairReport {
     double reciprocityError = 0.0; //!< before: RMS of A_i F_ij − A_j F_ji over pairs, relative to the RMS of their mean
     double closureError = 0.0;     //!< after the merge, before closure: largest |Σ_j F_ij − s_i|
     double largestCorrection = 0.0;  //!< of a factor by closure: max |d_i d_j − 1|
+    double rowChange = 0.0;          //!< of a row by both: Σ_j |change of F_ij|, area-weighted mean
     double remainingError = 0.0;     //!< after: largest |Σ_j F_ij − s_i|
     int iterations = 0;              //!< of the closure
     std::vector<std::size_t> failed; //!< patches whose rows did not close

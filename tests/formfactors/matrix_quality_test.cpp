@@ -37,6 +37,10 @@ TEST(MatrixQuality, RowsThatCloseMayStillMissTheColumns) {
     EXPECT_NEAR(static_cast<double>(columns.error[0]), 0.2, 1e-7);
     EXPECT_NEAR(static_cast<double>(columns.error[1]), 0.05, 1e-7);
     EXPECT_NEAR(columns.rms, std::sqrt((0.04 + 0.0025) / 2.0), 1e-12);
+    // Too much arrives of patch 0, too little of patch 1, as much as A F differs.
+    const std::vector<double> deficit = columnDeficit(matrix, kArea);
+    EXPECT_NEAR(deficit[0], -0.2, 1e-12);
+    EXPECT_NEAR(deficit[1], 0.2, 1e-12);
 }
 
 TEST(MatrixQuality, RowsThatDoNotCloseAreFound) {

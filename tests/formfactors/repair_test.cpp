@@ -61,6 +61,8 @@ TEST(Repair, MakesRowsReciprocalAndClosed) {
         EXPECT_GT(report.largestCorrection, 1e-4);
         EXPECT_LT(report.largestCorrection, 0.2); // no factor moves farther than the noise
         EXPECT_GT(report.reciprocityError, 0.05);
+        EXPECT_GT(report.rowChange, 0.01);
+        EXPECT_LT(report.rowChange, 0.2);
         expectReciprocalAndClosed(c, 1.1e-6);
     }
 }
@@ -73,6 +75,7 @@ TEST(Repair, LeavesARightMatrixAlone) {
     const RepairReport report = repair(c.matrix, c.area, c.weight);
     EXPECT_EQ(report.iterations, 0);
     EXPECT_LT(report.reciprocityError, 1e-6); // the areas are floats
+    EXPECT_LT(report.rowChange, 1e-6);
     for (std::size_t i = 0; i < before.size(); ++i)
         for (std::size_t k = 0; k < before[i].entries.size(); ++k)
             EXPECT_NEAR(matrix.row(i).entries[k].value / before[i].entries[k].value, 1.0, 1e-6);
@@ -97,19 +100,22 @@ TEST(Repair, MergesLinesByTheirNumber) {
     FormFactorMatrix matrix = twoPatches(0.3, 0.2);
     const std::vector<float> area{2.0F, 4.0F};
     const std::vector<double> weight{100.0 / 2.0, 50.0 / 4.0};
-    repair(matrix, area, weight, {.maxIterations = 0});
+    const RepairReport report = repair(matrix, area, weight, {.maxIterations = 0});
     const double exchange = (30.0 + 10.0) / (100.0 / 2.0 + 50.0 / 4.0);
     EXPECT_NEAR(matrix.row(0).entries[0].value, exchange / 2.0, 1e-15);
     EXPECT_NEAR(matrix.row(1).entries[0].value, exchange / 4.0, 1e-15);
+    const double changed = 2.0 * std::abs(exchange / 2.0 - 0.3) + 4.0 * std::abs(exchange / 4.0 - 0.2);
+    EXPECT_NEAR(report.rowChange, changed / 6.0, 1e-15);
 }
 
 TEST(Repair, APairSeenFromOneSideOnlyIsSeenFromBoth) {
     FormFactorMatrix matrix = twoPatches(0.5, 0.0);
     const std::vector<float> area{1.0F, 1.0F};
     const std::vector<double> weight{1.0, 1.0};
-    repair(matrix, area, weight, {.maxIterations = 0});
+    const RepairReport report = repair(matrix, area, weight, {.maxIterations = 0});
     ASSERT_EQ(matrix.row(1).entries.size(), 1U);
     EXPECT_EQ(matrix.row(1).entries[0].value, matrix.row(0).entries[0].value);
+    EXPECT_NEAR(report.rowChange, 0.25, 1e-15); // of each: half of 0.5 more or less
 }
 
 TEST(Repair, ReportsRowsThatCannotClose) {
