@@ -4,7 +4,6 @@
 #include "core/checksum.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
-#include "formfactors/hemicube.h"
 #include "formfactors/matrix_quality.h"
 #include "solver/computed_rows.h"
 
@@ -17,71 +16,7 @@ namespace lambert {
 
 namespace {
 
-constexpr double kBackFaceWarning = 0.01;
 constexpr double kUndividedWarning = 1e-3; ///< of the area
-
-/// What the rays meet that end on backs.
-struct BacksMet {
-    std::string material;  ///< the most frequent one; empty if there is none
-    double unwanted = 1.0; ///< share of these rays that do not end on occluders
-};
-
-/// The material whose black back is met most by rays from the patches that meet most of them.
-BacksMet mostMetBack(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> covered) {
-    std::vector<std::uint32_t> patches(mesh.size());
-    std::iota(patches.begin(), patches.end(), 0U);
-    const auto loss = [&](std::uint32_t patch) {
-        const double back = covered[patch];
-        return back <= kCovered ? static_cast<double>(mesh.area[patch]) * back : 0.0;
-    };
-    std::stable_sort(patches.begin(), patches.end(), [&](auto a, auto b) { return loss(a) > loss(b); });
-    patches.resize(std::min<std::size_t>(patches.size(), 200));
-    const Scene& scene = rays.scene();
-    std::vector<double> met(scene.materials.size(), 0.0);
-    double occluded = 0.0;
-    constexpr int kResolution = 16;
-    RayPacket packet;
-    const Hemicube hemicube(mesh, rays, {.resolution = kResolution, .randomRotation = false});
-    for (const std::uint32_t patch : patches) {
-        for (const HemicubeFace& face : hemicubeFaces(mesh.normal[patch], 0.0F, kResolution)) {
-            for (int row = 0; row < face.rows; row += 4) {
-                for (int column = 0; column < face.columns; column += 4) {
-                    tileDirections(face, column, row, kResolution, packet);
-                    rays.closest(hemicube.viewpoint(patch).origin, packet);
-                    for (int lane = 0; lane < RayPacket::kSize; ++lane) {
-                        if (packet.polygon[lane] == kNone || packet.facing[lane] < 0.0F) continue;
-                        const Polygon& polygon = scene.polygons[packet.polygon[lane]];
-                        if (polygon.backMaterial == kNone)
-                            (isOccluder(scene, polygon) ? occluded : met[polygon.material]) +=
-                                static_cast<double>(mesh.area[patch]);
-                    }
-                }
-            }
-        }
-    }
-    const auto most = std::max_element(met.begin(), met.end());
-    if (!(*most > 0.0)) return {{}, 0.0};
-    const double onBacks = std::accumulate(met.begin(), met.end(), 0.0);
-    return {scene.materials[static_cast<std::size_t>(most - met.begin())].name, onBacks / (onBacks + occluded)};
-}
-
-/// How much of the rays meets backs; `covered` is RadiositySolution::covered.
-void assessBacks(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> covered, RowQuality& quality) {
-    double receivingArea = 0.0;
-    double backArea = 0.0;
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const double back = covered[i];
-        if (back > kCovered) continue;
-        receivingArea += static_cast<double>(mesh.area[i]);
-        backArea += static_cast<double>(mesh.area[i]) * back;
-    }
-    quality.backFaceFraction = receivingArea > 0.0 ? backArea / receivingArea : 0.0;
-    if (quality.backFaceFraction > kBackFaceWarning) {
-        const BacksMet met = mostMetBack(mesh, rays, covered);
-        quality.backFaceFraction *= met.unwanted;
-        quality.backFaceMaterial = met.material;
-    }
-}
 
 void bakeLights(const BakeOptions& options, const LightSolver& solver, BakedScene& result, Progress& progress) {
     if (options.perLight)
@@ -190,11 +125,14 @@ void solveStored(const BakeOptions& options, const Task& task, BakedScene& resul
             std::max(result.rows.largestClosureError, std::abs(matrix.row(i).sum() - 1.0));
     result.rows.entries = matrix.entryCount();
     result.rows.bytes = matrix.bytes();
+    const std::vector<double> deficit =
+        result.repair ? std::move(obtained.deficit) : columnDeficit(matrix, result.mesh.area);
     result.seconds.formFactors = watch.lap();
     const bool kept = !options.formFactors.checkpoint.path.empty();
     const std::string identity = fmt::format("lambert {}, form factors {}", options.formFactors.version,
                                              kept ? checksumOf(matrix) : std::string());
     solveFor(options, task, rows, identity, result, progress);
+    result.energyCheck = checkEnergy(result, options, deficit);
     result.seconds.solve = watch.lap();
 }
 
@@ -211,18 +149,17 @@ void solveComputed(const BakeOptions& options, const Task& task, BakedScene& res
     result.seconds.solve = watch.lap();
 }
 
-void collectWarnings(BakedScene& result) {
+void collectWarnings(const BakeOptions& options, BakedScene& result) {
     const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
-    if (result.rows.backFaceFraction > kBackFaceWarning)
-        warn(fmt::format(
-            "{:.1f} % of the rays meet black back faces, most of them of material \"{}\": turn its polygons, "
-            "or make it two-sided (--two-sided, or \"two_sided\" in an overrides file)",
-            100.0 * result.rows.backFaceFraction, result.rows.backFaceMaterial));
+    if (const auto text = warningOf(result.blackBacks)) warn(*text);
+    for (std::string& text : energyWarnings(result, options)) warn(std::move(text));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
     const double area = std::accumulate(result.mesh.area.begin(), result.mesh.area.end(), 0.0);
     if (result.meshReport.undividedArea > kUndividedWarning * area)
-        warn(fmt::format("{} polygons could not be divided cleanly and stay whole ({:.2g} % of the area)",
-                         result.meshReport.undividedPolygons, 100.0 * result.meshReport.undividedArea / area));
+        warn(fmt::format(
+            "{} polygons could not be divided cleanly and stay whole ({:.2g} % of the area), with one value "
+            "of light each; slivers and outlines that nearly touch are the usual cause",
+            result.meshReport.undividedPolygons, 100.0 * result.meshReport.undividedArea / area));
 }
 
 } // namespace
@@ -256,7 +193,8 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
                          : options.formFactors.transport.stored ? solveStored
                                                                 : solveComputed;
     solveBy(options, {problem, start}, result, progress);
-    assessBacks(result.mesh, *result.rays, result.solution.covered, result.rows);
+    if (!result.energyCheck.beforeRepair) result.energyCheck = checkEnergy(result, options, {});
+    result.blackBacks = findBlackBacks(result.mesh, *result.rays, result.solution);
     watch.lap();
 
     progress.begin("bake", 0);
@@ -264,7 +202,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
         reconstructAverage(result.mesh, *result.scene, result.solution, options.reconstruction, &result.separatedFaces);
     progress.end();
     result.seconds.bake = watch.lap();
-    collectWarnings(result);
+    collectWarnings(options, result);
     return result;
 }
 

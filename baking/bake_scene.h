@@ -1,5 +1,7 @@
 #pragma once
 
+#include "baking/black_backs.h"
+#include "baking/energy_check.h"
 #include "baking/mesh_scene.h"
 #include "baking/per_light.h"
 #include "baking/reconstruction.h"
@@ -37,10 +39,7 @@ struct BakeSeconds {
 /// How the computed rows keep their identities.
 struct RowQuality {
     double largestClosureError = 0.0; //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
-    double backFaceFraction =
-        0.0; //!< of the rays from patches that can receive light, area-weighted; occluders are none
-    std::string backFaceMaterial; //!< whose back they meet most often; empty if they meet none
-    std::size_t entries = 0;      //!< of the matrix; 0 without one
+    std::size_t entries = 0;          //!< of the matrix; 0 without one
     std::size_t bytes = 0;
 };
 
@@ -59,6 +58,8 @@ struct BakedScene : MeshedScene {
     std::vector<std::unique_ptr<SolverCheckpoint>> checkpoints{}; //!< to be removed once the result is on the disk
     std::uint64_t rayCount = 0; //!< of the form factors, or of what found the light without them
     RowQuality rows{};
+    EnergyCheck energyCheck{};
+    BlackBacks blackBacks{};
     std::size_t separatedFaces = 0;
     BakeSeconds seconds{};
     std::vector<std::string> warnings{}; //!< one line each

@@ -19,9 +19,9 @@ namespace lambert {
 
 namespace {
 
-constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024},
-                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096},
-                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768}};
+constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024, 512},
+                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096, 4096},
+                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768, 16384}};
 
 } // namespace
 
@@ -31,8 +31,9 @@ const Quality& qualityOf(const std::string& name) {
 
 void addMeshArguments(CLI::App& command, TransportArguments& a, const std::string& patches) {
     command
-        .add_option("--quality", a.quality,
-                    "preview, normal or high: patches, resolution and tolerance, unless given [normal]")
+        .add_option(
+            "--quality", a.quality,
+            "preview, normal or high: patches, resolution, rays to the sky and tolerance, unless given [normal]")
         ->check(CLI::IsMember({"preview", "normal", "high"}))
         ->group("Mesh");
     auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
@@ -141,7 +142,8 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
     BakeOptions options;
     options.mesh = meshOptions(a);
     checkLights(a.light);
-    options.directLight = {.points = a.light.points, .skyRays = a.light.skyRays, .seed = run.seed};
+    options.directLight = {
+        .points = a.light.points, .skyRays = a.light.skyRays.value_or(qualityOf(a.quality).skyRays), .seed = run.seed};
     if (usesVirtualLights(a)) {
         options.instantRadiosity = instantRadiosityOptions(a, run);
     } else {

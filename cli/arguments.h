@@ -82,6 +82,7 @@ struct Quality {
     double rays;       //!< the most
     double tolerance;
     std::uint32_t particles; //!< of instant radiosity
+    std::uint32_t skyRays;   //!< see DirectLightOptions
 };
 const Quality& qualityOf(const std::string& name);
 

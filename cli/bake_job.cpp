@@ -1,5 +1,6 @@
 #include "cli/bake_job.h"
 #include "cli/bake_report.h"
+#include "cli/bake_verdict.h"
 #include "cli/light_files.h"
 #include "cli/scene_files.h"
 #include "cli/terminal_text.h"
@@ -75,33 +76,14 @@ std::string transportText(const BakeArguments& a, const BakedScene& baked) {
                        static_cast<double>(baked.rayCount), solver);
 }
 
-/// Says what the solver did not reach, and returns whether it reached all.
-bool checkTarget(const BakeOptions& options, const BakedScene& baked, SceneLog& log) {
-    if (baked.stochastic) {
-        if (baked.stochastic->targetReached) return true;
-        log.warning(fmt::format("--target-error: missed after all of {:.3g} rays: the standard error is {:.2g} %, with "
-                                "what is not known of it {:.2g} %",
-                                static_cast<double>(baked.stochastic->rays), 100.0 * baked.stochastic->relativeError,
-                                100.0 * baked.stochastic->upperRelativeError));
-        return false;
-    }
-    if (baked.instantRadiosity) return true; // it has none
-    double residual = baked.solution.residual;
-    for (const BakedLight& light : baked.lights) residual = std::max(residual, light.residual);
-    if (residual <= options.solver.tolerance || options.solver.bounces > 0) return true;
-    log.warning(fmt::format("residual {:.2g} is above --tolerance {:.2g}", residual, options.solver.tolerance));
-    return false;
-}
-
 std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
     std::string text = fmt::format("{:<20} {:>10} {:>11} {:>11} {:>11}   mean irradiance (r g b)\n", "material",
                                    "area m²", "", "", "");
     for (const MaterialLight& light : materialLight(baked))
         text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
                             light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
-    return text + fmt::format("{} patches, {}, energy imbalance {:.2g}, exposure {:.2f} EV, {:.1f} s\n",
-                              baked.mesh.size(), solverText(baked), baked.solution.energy.imbalance(), exposure,
-                              seconds);
+    return text + fmt::format("{} patches, {}, {}, exposure {:.2f} EV, {:.1f} s\n", baked.mesh.size(),
+                              solverText(baked), imbalanceText(baked), exposure, seconds);
 }
 
 SolutionRecord solutionOf(const BakeArguments& a, const BakeJob& job, const BakedScene& baked) {
@@ -220,10 +202,13 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.patches = baked.mesh.size();
     outcome.rays = baked.rayCount;
     outcome.peakMemory = peakMemoryBytes();
-    outcome.imbalance = baked.solution.energy.imbalance();
+    outcome.imbalance = worseImbalance(baked);
     removeCheckpoints(baked);
-    log.line(fmt::format("energy imbalance {:.2g}, exposure {:.2f} EV", *outcome.imbalance, exposure));
-    if (!checkTarget(options, baked, log)) outcome.exitCode = ExitCode::TargetMissed;
+    log.line(fmt::format("{}, exposure {:.2f} EV", imbalanceText(baked), exposure));
+    const BakeVerdict verdict = judge(options, baked);
+    for (const std::string& warning : verdict.warnings) log.warning(warning);
+    outcome.report["warnings"] = log.warnings();
+    outcome.exitCode = verdict.exitCode;
     return outcome;
 }
 

@@ -49,8 +49,8 @@ struct BakeOutcome {
     std::size_t patches = 0;
     std::uint64_t rays = 0;
     double seconds = 0.0;
-    std::uint64_t peakMemory = 0; //!< bytes
-    std::optional<double> imbalance;
+    std::uint64_t peakMemory = 0;    //!< bytes
+    std::optional<double> imbalance; //!< of the energy; that before repair if it is the worse one
 };
 
 /// Throws UsageError for what can be known to be wrong before a scene is read.

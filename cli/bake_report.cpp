@@ -33,8 +33,9 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    options.update(methodOptionsJson(bakeOptions(in.transport, in.run), baked.plan));
-    options.update(lightOptionsJson(in.transport.light));
+    const BakeOptions inForce = bakeOptions(in.transport, in.run);
+    options.update(methodOptionsJson(inForce, baked.plan));
+    options.update(lightOptionsJson(in.transport.light, inForce.directLight));
     options["quality"] = in.transport.quality;
     if (!baked.stochastic && !baked.instantRadiosity) options.update(solverOptionsJson(solverOptions(in.transport)));
     options["warm_start"] = in.transport.warmStart.empty() ? Json(nullptr) : Json(in.transport.warmStart.string());
@@ -93,6 +94,13 @@ Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
         bounces.push_back({{"reflected", jsonVector(flux)}});
     }
     return bounces;
+}
+
+Json backFacesJson(const BlackBacks& backs) {
+    return {{"rays", backs.rays},
+            {"light", backs.light},
+            {"emission", backs.emission},
+            {"material", backs.material.empty() ? Json(nullptr) : Json(backs.material)}};
 }
 
 } // namespace
@@ -194,7 +202,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["form_factors"] = {{"entries", baked.rows.entries},
                               {"bytes", baked.rows.bytes},
                               {"largest_closure_error", baked.rows.largestClosureError},
-                              {"back_face_fraction", baked.rows.backFaceFraction},
+                              {"back_face_fraction", baked.blackBacks.rays},
                               {"repair", repairJson(baked.repair)}};
     report["seconds"] = {{"read", in.readSeconds},
                          {"mesh", baked.seconds.mesh},
@@ -205,6 +213,9 @@ Json bakeReport(const BakeReportInput& in) {
                          {"write", in.writeSeconds},
                          {"total", in.totalSeconds}};
     report["energy"] = energyJson(baked.solution.energy);
+    report["energy"]["imbalance_before_repair"] =
+        baked.energyCheck.beforeRepair ? Json(*baked.energyCheck.beforeRepair) : Json(nullptr);
+    report["back_faces"] = backFacesJson(baked.blackBacks);
     Json materials = Json::array();
     for (const MaterialLight& light : materialLight(baked))
         materials.push_back({{"name", light.name},

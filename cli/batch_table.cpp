@@ -16,14 +16,17 @@ constexpr std::array kStatuses{BatchStatus::Baked,  BatchStatus::Predicted,   Ba
 std::string rowText(const BatchRow& row) {
     const BakeOutcome& o = row.outcome;
     const bool done = row.status == BatchStatus::Baked || row.status == BatchStatus::Predicted;
+    const std::string remark = row.status == BatchStatus::Baked && row.exitCode == ExitCode::TargetMissed
+                                   ? "missed a target, see the warnings"
+                                   : row.error;
     const auto cell = [](bool known, const std::string& text) { return known ? text : std::string("-"); };
     return fmt::format(
         "{:<11} {:>9} {:>9} {:>9} {:>9} {:>10} {:>8}{}{}", nameOf(row.status), cell(done, fmt::format("{}", o.patches)),
         cell(done, fmt::format("{:.2g}", static_cast<double>(o.rays))), cell(done, fmt::format("{:.1f}", o.seconds)),
         cell(done, fmt::format("{:.0f}", static_cast<double>(o.peakMemory) / 1e6)),
         cell(o.imbalance.has_value(), fmt::format("{:.1e}", o.imbalance.value_or(0.0))),
-        cell(row.status != BatchStatus::NotRun, fmt::format("{}", row.warnings.size())), row.error.empty() ? "" : "   ",
-        row.error);
+        cell(row.status != BatchStatus::NotRun, fmt::format("{}", row.warnings.size())), remark.empty() ? "" : "   ",
+        remark);
 }
 
 } // namespace

@@ -141,6 +141,15 @@ void checkPerBounce(const CompareVplArguments& a, const std::vector<Method>& com
                 fmt::format("--per-bounce: what {} compensates is known only in sum, not by bounce", method->name()));
 }
 
+/// Lines have no bias: a reference that is out of balance has too few of them, or loses light.
+ExitCode judgeReference(double imbalance) {
+    if (std::abs(imbalance) <= kImbalanceTold) return ExitCode::Ok;
+    warnLine(fmt::format("{:.1f} % of the reference's light {}: it is no better than that; try fewer --patches, which "
+                         "have more lines each, and look for faces that cross or do not meet (lambert info)",
+                         100.0 * std::abs(imbalance), imbalance > 0.0 ? "gets lost" : "comes from nowhere"));
+    return std::abs(imbalance) > kImbalanceMissed ? ExitCode::TargetMissed : ExitCode::Ok;
+}
+
 ExitCode compareVpl(const CompareVplArguments& a) {
     VplComparisonOptions options;
     options.methods = methods(a);
@@ -201,7 +210,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", vplComparisonText(comparison));
     logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
-    return ExitCode::Ok;
+    return judgeReference(reference.imbalance());
 }
 
 } // namespace

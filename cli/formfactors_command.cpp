@@ -8,6 +8,7 @@
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
+#include "baking/factor_diagnosis.h"
 #include "core/parallel.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
@@ -20,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 namespace lambert {
 
@@ -104,8 +106,8 @@ struct Run {
 void warnOfBacks(Run& run, double back) {
     if (back > 0.01)
         run.warn(
-            fmt::format("{:.1f} % of all light meets black back faces, see `lambert info`; turn their polygons, or "
-                        "make them two-sided (--two-sided)",
+            fmt::format("{:.1f} % of the rays meet black back faces, `lambert info` names their materials: turn their "
+                        "polygons, or make them two-sided (--two-sided)",
                         100.0 * back));
 }
 
@@ -181,10 +183,21 @@ void leaveOutCovered(Run& run, const FormFactorMatrix& matrix, PatchGroups& grou
         logLine(run.a.run, fmt::format("{:.4g} m² lie inside other objects or under them and are in no group", area));
 }
 
-void reportGroups(Run& run, const FormFactorMatrix& matrix, const PatchGroups& groups,
+void warnOfLostHeat(Run& run, const std::optional<TransportPlan>& plan, const HeatFlow& heat, double lost) {
+    double largest = std::abs(heat.environmentFlow);
+    for (const double flow : heat.flow) largest = std::max(largest, std::abs(flow));
+    if (std::abs(lost) <= kImbalanceTold * largest) return;
+    run.warn(fmt::format("heat flow: before repair the flows sum to {:.3g} W, {:.2g} % of the largest one: {}", lost,
+                         100.0 * std::abs(lost) / largest, causeAndRemedy(plan, false)));
+}
+
+void reportGroups(Run& run, const SceneMatrix& obtained, const PatchGroups& groups,
                   const std::optional<Temperatures>& temperatures) {
+    const FormFactorMatrix& matrix = obtained.matrix;
+    const std::vector<double>& deficit = obtained.deficit;
     const PatchMesh& mesh = run.scene.mesh;
-    GroupReport report{groups, groupFactors(matrix, mesh.area, groups.group, groups.names.size()), temperatures, {}};
+    GroupReport report{
+        groups, groupFactors(matrix, mesh.area, groups.group, groups.names.size()), temperatures, {}, {}};
     if (temperatures) {
         HeatFlowOptions options;
         options.environment = temperatures->environment;
@@ -194,6 +207,9 @@ void reportGroups(Run& run, const FormFactorMatrix& matrix, const PatchGroups& g
                                  report.heat->residual, options.tolerance, report.heat->iterations));
             run.exitCode = ExitCode::TargetMissed;
         }
+        report.heatLostByFactors =
+            std::inner_product(deficit.begin(), deficit.end(), report.heat->radiosity.begin(), 0.0);
+        warnOfLostHeat(run, obtained.plan, *report.heat, *report.heatLostByFactors);
     }
     if (!run.a.output.empty()) writeWholeFile(run.a.output, groupCsv(report, run.comment));
     if (run.a.output.empty() || !run.a.run.quiet) fmt::print("{}", groupTable(report));
@@ -225,7 +241,8 @@ void computePatches(Run& run) {
                 fmt::format("{} patches, {}: {:.3g} rays, {:.1f} s", mesh.size(), obtained.plan->effort(),
                             static_cast<double>(obtained.plan->rays), run.seconds["form_factors"].get<double>()));
     if (obtained.repair) logLine(a.run, repairText(*obtained.repair));
-    if (obtained.repair && !obtained.repair->failed.empty()) run.warn(repairText(*obtained.repair));
+    if (obtained.repair)
+        for (const std::string& text : repairWarnings(obtained.plan, *obtained.repair)) run.warn(text);
     run.setComment(obtained.plan ? obtained.plan->effort() : "from " + a.transport.formFactors.string());
     const MatrixQuality quality = assessMatrix(obtained.matrix, mesh.area);
     warnOfBacks(run, quality.openBack);
@@ -238,7 +255,7 @@ void computePatches(Run& run) {
     run.report["options"] = matrixOptionsJson(run.source, obtained.plan);
     run.seconds["assess"] = watch.lap();
     if (groups) leaveOutCovered(run, obtained.matrix, *groups);
-    if (groups) reportGroups(run, obtained.matrix, *groups, temperatures);
+    if (groups) reportGroups(run, obtained, *groups, temperatures);
     if (!groups && !a.run.quiet) fmt::print("{}", summaryOf(quality, mesh.size()));
     if (!groups && !a.output.empty()) {
         run.progress.begin("write", 0);

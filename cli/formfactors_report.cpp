@@ -60,8 +60,21 @@ std::string heatTable(const GroupReport& r, std::size_t nameWidth) {
                         r.temperatures->environment, "1", heat.environmentFlow);
     text += fmt::format("{} {:>11} {:>11} {:>14.7g}\n", padded("(black backs)", nameWidth), "0", "1", heat.backFlow);
     text += fmt::format("{} {:>11} {:>11} {:>14.3g}\n", padded("sum", nameWidth), "", "", heat.imbalance());
+    text +=
+        fmt::format("{} {:>11} {:>11} {:>14.3g}\n", padded("before repair", nameWidth), "", "", *r.heatLostByFactors);
     if (adiabatic) text += "* adiabatic: the temperature of its mean radiosity\n";
     return text;
+}
+
+/// How far the factors of both directions are apart.
+std::string reciprocityText(const GroupReport& r, const GroupReciprocity& reciprocity) {
+    const double worst = r.factors.reciprocityError(reciprocity.a, reciprocity.b);
+    std::string text =
+        fmt::format("reciprocity: A F of both directions differ by {:.2g} % RMS", 100.0 * reciprocity.rms);
+    if (worst > 0.0)
+        text += fmt::format(", at most by {:.2g} % between {} and {}", 100.0 * worst,
+                            oneLine(r.groups.names[reciprocity.a]), oneLine(r.groups.names[reciprocity.b]));
+    return text + "\n";
 }
 
 } // namespace
@@ -71,29 +84,33 @@ std::string groupTable(const GroupReport& r) {
     std::size_t nameWidth = 14;
     for (const std::string& name : r.groups.names) nameWidth = std::max(nameWidth, widthOf(oneLine(name)));
     const std::size_t columns = std::min(f.groups, kMostColumns);
-    const auto table = [&](const char* title, auto cell, auto back, auto out) {
+    const auto table = [&](const char* title, const char* last, auto cell, auto back, auto out, auto check) {
         std::string text = fmt::format("{} {:>10}", padded(title, nameWidth), "area m²");
         for (std::size_t j = 0; j < columns; ++j) {
             const std::string name = shortened(r.groups.names[j]);
             text += "  " + std::string(std::max<std::size_t>(10, widthOf(name)) - widthOf(name), ' ') + name;
         }
         if (columns < f.groups) text += fmt::format("  … {} more", f.groups - columns);
-        text += "       (back)      (out)\n";
+        text += fmt::format("       (back)      (out) {:>12}\n", last);
         for (std::size_t i = 0; i < f.groups; ++i) {
             text += fmt::format("{} {:>10.5g}", padded(oneLine(r.groups.names[i]), nameWidth), f.area[i]);
             for (std::size_t j = 0; j < columns; ++j)
                 text += fmt::format("  {:>{}.5g}", cell(i, j),
                                     std::max<std::size_t>(10, widthOf(shortened(r.groups.names[j]))));
-            text += fmt::format("  {:>11.5g}{:>11.5g}\n", back(i), out(i));
+            text += fmt::format("  {:>11.5g}{:>11.5g} {:>12}\n", back(i), out(i), check(i));
         }
         return text;
     };
+    const GroupReciprocity reciprocity = groupReciprocity(f);
     std::string text = table(
-        "F from \\ to", [&](auto i, auto j) { return f.factor(i, j); }, [&](auto i) { return f.backFactor(i); },
-        [&](auto i) { return f.outFactor(i); });
+        "F from \\ to", "(sum)", [&](auto i, auto j) { return f.factor(i, j); },
+        [&](auto i) { return f.backFactor(i); }, [&](auto i) { return f.outFactor(i); },
+        [&](auto i) { return fmt::format("{:.6f}", f.rowSum(i)); });
     text += "\n" + table(
-                       "A F, m²", [&](auto i, auto j) { return f.exchangeArea(i, j); },
-                       [&](auto i) { return f.back[i]; }, [&](auto i) { return f.out[i]; });
+                       "A F, m²", "(asymmetry)", [&](auto i, auto j) { return f.exchangeArea(i, j); },
+                       [&](auto i) { return f.back[i]; }, [&](auto i) { return f.out[i]; },
+                       [&](auto i) { return fmt::format("{:.2g} %", 100.0 * reciprocity.largest[i]); });
+    text += reciprocityText(r, reciprocity);
     if (columns < f.groups) text += "all columns are in the file (-o) and in the JSON report\n";
     if (r.heat) text += heatTable(r, nameWidth);
     return text;
@@ -101,11 +118,13 @@ std::string groupTable(const GroupReport& r) {
 
 std::string groupCsv(const GroupReport& r, const std::string& comment) {
     const GroupFactors& f = r.factors;
+    const GroupReciprocity reciprocity = groupReciprocity(f);
     std::string text = fmt::format("# {}\n", oneLine(comment));
     text += "group,area";
     for (const std::string& name : r.groups.names) text += "," + quoted("F to " + name);
     text += ",F_back,F_out";
     for (const std::string& name : r.groups.names) text += "," + quoted("AF to " + name);
+    text += ",row_sum,reciprocity_error";
     if (r.heat) text += ",kelvin,emissivity,watts";
     text += "\n";
     for (std::size_t i = 0; i < f.groups; ++i) {
@@ -113,6 +132,7 @@ std::string groupCsv(const GroupReport& r, const std::string& comment) {
         for (std::size_t j = 0; j < f.groups; ++j) text += fmt::format(",{:.9g}", f.factor(i, j));
         text += fmt::format(",{:.9g},{:.9g}", f.backFactor(i), f.outFactor(i));
         for (std::size_t j = 0; j < f.groups; ++j) text += fmt::format(",{:.9g}", f.exchangeArea(i, j));
+        text += fmt::format(",{:.9g},{:.3g}", f.rowSum(i), reciprocity.largest[i]);
         if (r.heat) {
             const ThermalSurface& surface = r.temperatures->surfaces[i];
             text +=
@@ -126,6 +146,7 @@ std::string groupCsv(const GroupReport& r, const std::string& comment) {
 
 Json groupJson(const GroupReport& r) {
     const GroupFactors& f = r.factors;
+    const GroupReciprocity reciprocity = groupReciprocity(f);
     Json groups = Json::array();
     for (std::size_t i = 0; i < f.groups; ++i) {
         Json factors = Json::array(), exchange = Json::array();
@@ -133,8 +154,10 @@ Json groupJson(const GroupReport& r) {
             factors.push_back(f.factor(i, j));
             exchange.push_back(f.exchangeArea(i, j));
         }
-        Json group{{"name", r.groups.names[i]},  {"area", f.area[i]},       {"factors", factors},
-                   {"exchange_areas", exchange}, {"back", f.backFactor(i)}, {"out", f.outFactor(i)}};
+        Json group{{"name", r.groups.names[i]}, {"area", f.area[i]},
+                   {"factors", factors},        {"exchange_areas", exchange},
+                   {"back", f.backFactor(i)},   {"out", f.outFactor(i)},
+                   {"row_sum", f.rowSum(i)},    {"reciprocity_error", reciprocity.largest[i]}};
         if (r.heat) {
             const ThermalSurface& surface = r.temperatures->surfaces[i];
             group["adiabatic"] = !surface.kelvin.has_value();
@@ -144,12 +167,17 @@ Json groupJson(const GroupReport& r) {
         }
         groups.push_back(group);
     }
-    Json json{{"groups", groups}};
+    Json json{{"groups", groups}, {"group_reciprocity", {{"rms_error", reciprocity.rms}}}};
+    if (f.groups > 0) {
+        json["group_reciprocity"]["worst_error"] = f.reciprocityError(reciprocity.a, reciprocity.b);
+        json["group_reciprocity"]["worst_pair"] = {r.groups.names[reciprocity.a], r.groups.names[reciprocity.b]};
+    }
     if (r.heat)
         json["heat_flow"] = {{"environment_kelvin", r.temperatures->environment},
                              {"environment_watts", r.heat->environmentFlow},
                              {"back_watts", r.heat->backFlow},
                              {"sum_watts", r.heat->imbalance()},
+                             {"sum_watts_before_repair", *r.heatLostByFactors},
                              {"iterations", r.heat->iterations},
                              {"residual", r.heat->residual}};
     return json;

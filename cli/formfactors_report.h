@@ -18,7 +18,8 @@ struct GroupReport {
     PatchGroups groups;
     GroupFactors factors;
     std::optional<Temperatures> temperatures;
-    std::optional<HeatFlow> heat; //!< with temperatures
+    std::optional<HeatFlow> heat;            //!< with temperatures
+    std::optional<double> heatLostByFactors; //!< W, the sum of all flows by the factors before their repair
 };
 
 /// One row per group: area, factors, exchange areas; with temperatures the heat below. For a person.

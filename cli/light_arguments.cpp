@@ -126,7 +126,9 @@ void addLightArguments(CLI::App& command, LightArguments& a) {
         ->type_name("N")
         ->check(between(1, 65536))
         ->group("Light");
-    command.add_option("--sky-rays", a.skyRays, "Rays of a patch to the sky [4096]")
+    command
+        .add_option("--sky-rays", a.skyRays,
+                    "Rays of a patch to the sky [4096; 512 and 16384 with --quality preview and high]")
         ->type_name("N")
         ->check(between(2, 16777216))
         ->group("Light");
@@ -158,12 +160,12 @@ void addDaylight(Scene& scene, const LightArguments& a) {
     scene.lights.push_back(std::move(light));
 }
 
-nlohmann::ordered_json lightOptionsJson(const LightArguments& a) {
+nlohmann::ordered_json lightOptionsJson(const LightArguments& a, const DirectLightOptions& direct) {
     using Json = nlohmann::ordered_json;
     return {{"sky", a.sky.empty() ? Json(nullptr) : Json(a.sky)},
             {"sun", a.sun.empty() ? Json(nullptr) : Json(a.sun)},
-            {"light_points", a.points},
-            {"sky_rays", a.skyRays}};
+            {"light_points", direct.points},
+            {"sky_rays", direct.skyRays}};
 }
 
 } // namespace lambert

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace lambert {
@@ -16,7 +17,7 @@ struct LightArguments {
     std::string sky; //!< clear, overcast, r,g,b or a picture's name; empty: darkness
     std::string sun; //!< AZIMUTH,ELEVATION, and its illuminance as one number or three; empty: none
     std::uint32_t points = DirectLightOptions{}.points;
-    std::uint32_t skyRays = DirectLightOptions{}.skyRays;
+    std::optional<std::uint32_t> skyRays;
 };
 
 void addLightArguments(CLI::App& command, LightArguments& arguments);
@@ -30,6 +31,7 @@ std::filesystem::path skyPicture(const LightArguments& arguments);
 /// Puts sky and sun into a scene. Throws UsageError as above, InputError if the picture cannot be read.
 void addDaylight(Scene& scene, const LightArguments& arguments);
 
-nlohmann::ordered_json lightOptionsJson(const LightArguments& arguments);
+/// `direct`: in force.
+nlohmann::ordered_json lightOptionsJson(const LightArguments& arguments, const DirectLightOptions& direct);
 
 } // namespace lambert

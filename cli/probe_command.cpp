@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
+#include "cli/bake_verdict.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/points_file.h"
@@ -69,12 +70,16 @@ ExitCode probe(const ProbeArguments& a) {
         fmt::print("{}", text);
     else
         writeWholeFile(a.output, text);
-    if (!a.run.json.empty())
-        writeJson(bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt, readSeconds,
-                              writing.seconds(), total.seconds()}),
-                  a.run.json);
+    const BakeVerdict verdict = judge(options, baked);
+    for (const std::string& warning : verdict.warnings) warnLine(oneLine(warning));
+    if (!a.run.json.empty()) {
+        auto report = bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt,
+                                  readSeconds, writing.seconds(), total.seconds()});
+        for (const std::string& warning : verdict.warnings) report["warnings"].push_back(warning);
+        writeJson(report, a.run.json);
+    }
     removeCheckpoints(baked);
-    return ExitCode::Ok;
+    return verdict.exitCode;
 }
 
 } // namespace

@@ -166,9 +166,10 @@ nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::
 }
 
 std::string repairText(const RepairReport& repair) {
-    std::string text =
-        fmt::format("repair: reciprocity error was {:.2g}, rows off by {:.2g} at most; largest correction {:.2g} %",
-                    repair.reciprocityError, repair.closureError, 100.0 * repair.largestCorrection);
+    std::string text = fmt::format(
+        "repair: reciprocity error was {:.2g}, rows off by {:.2g} at most; largest correction {:.2g} %, rows "
+        "changed by {:.2g} in the mean",
+        repair.reciprocityError, repair.closureError, 100.0 * repair.largestCorrection, repair.rowChange);
     if (!repair.failed.empty())
         text += fmt::format("; {} rows could not be closed, the first is {}, by {:.2g} at most", repair.failed.size(),
                             repair.failed.front() + 1, repair.remainingError);
@@ -180,6 +181,7 @@ nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair) {
     return {{"reciprocity_error_before", repair->reciprocityError},
             {"closure_error_before", repair->closureError},
             {"largest_correction", repair->largestCorrection},
+            {"row_change", repair->rowChange},
             {"closure_error_after", repair->remainingError},
             {"iterations", repair->iterations},
             {"failed_rows", repair->failed}};

@@ -33,6 +33,7 @@ public:
         }
         result_.referencePatches = reference.patches();
         result_.referenceLines = reference.lines();
+        result_.referenceImbalance = reference.imbalance();
         for (const auto& method : options_.methods) result_.methods.push_back(compared(method));
         return std::move(result_);
     }

@@ -76,7 +76,8 @@ struct VplComparison {
     std::vector<ReferenceLight> referenceBounces; //!< as RadiosityReference::byBounce; empty unless asked for
     std::vector<std::size_t> referencePatches;
     std::uint32_t referenceLines = 0;
-    double referenceSeconds = 0.0; //!< on the clock
+    double referenceImbalance = 0.0; //!< see RadiosityReference::imbalance
+    double referenceSeconds = 0.0;   //!< on the clock
     std::vector<VplMethodResult> methods;
 
     double meanIrradiance() const; //!< of the reference, over points and channels

@@ -58,10 +58,15 @@ std::vector<std::vector<RgbSum>> solvedByBounce(const SolverProblem& problem, Fo
     return result;
 }
 
-/// The irradiance of the patches, as Level::irradiance. Form factors carry only what is reflected: direct light, of
+struct Solved {
+    std::vector<std::vector<RgbSum>> irradiance; ///< as Level::irradiance
+    double imbalance = 0.0;                      ///< of the energy
+};
+
+/// Form factors carry only what is reflected: direct light, of
 /// which lines that meet small emitters would give a noisy account, is found for itself.
-std::vector<std::vector<RgbSum>> solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces,
-                                        std::uint64_t seed, Progress& progress) {
+Solved solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces, std::uint64_t seed,
+              Progress& progress) {
     std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
     const EmitterLight emitters(rays, mesh, kEmitterPoints, seed);
     if (emitters.isKnown()) {
@@ -72,7 +77,7 @@ std::vector<std::vector<RgbSum>> solved(PatchMesh mesh, const RayCaster& rays, s
     const auto isDark = [](const auto& light) { return light.x + light.y + light.z == 0; };
     if (std::all_of(direct.begin(), direct.end(), isDark) &&
         std::all_of(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), isDark))
-        return std::vector(static_cast<std::size_t>(1 + bounces), direct); // lamps that nothing sees
+        return {std::vector(static_cast<std::size_t>(1 + bounces), direct)}; // lamps that nothing sees
     const SolverProblem problem(mesh, std::move(direct));
     TransportOptions options;
     options.method = TransportMethod::LocalLines;
@@ -80,8 +85,10 @@ std::vector<std::vector<RgbSum>> solved(PatchMesh mesh, const RayCaster& rays, s
     options.seed = seed;
     const TransportMatrix matrix = computeMatrix(planTransport(options, mesh, rays, progress), mesh, rays, progress);
     StoredRows rows(matrix.matrix);
-    std::vector<std::vector<RgbSum>> result = solvedByBounce(problem, rows, bounces, progress);
-    result.insert(result.begin(), solve(problem, rows, kSolve, progress).irradiance);
+    Solved result{solvedByBounce(problem, rows, bounces, progress)};
+    RadiositySolution solution = solve(problem, rows, kSolve, progress);
+    result.irradiance.insert(result.irradiance.begin(), std::move(solution.irradiance));
+    result.imbalance = solution.energy.imbalance();
     return result;
 }
 
@@ -147,8 +154,12 @@ RadiosityReference::RadiosityReference(const MeshedScene& scene, const Reference
         const auto key = philox({set++, 0, 0, 0x52454652}, options.seed);
         return solved(mesh, rays, lines, options.bounces, std::uint64_t{key[0]} << 32 | key[1], progress);
     };
-    for (Level& level : levels_) level.irradiance = solution(level.mesh, lines_);
-    fewerLines_ = solution(levels_.back().mesh, static_cast<std::uint32_t>(lines_ / kLineRatio));
+    for (Level& level : levels_) {
+        Solved found = solution(level.mesh, lines_);
+        level.irradiance = std::move(found.irradiance);
+        if (std::abs(found.imbalance) > std::abs(imbalance_)) imbalance_ = found.imbalance;
+    }
+    fewerLines_ = solution(levels_.back().mesh, static_cast<std::uint32_t>(lines_ / kLineRatio)).irradiance;
 }
 
 std::vector<std::size_t> RadiosityReference::patches() const {

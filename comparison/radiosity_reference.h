@@ -56,8 +56,9 @@ public:
     std::vector<ReferenceLight> byBounce(std::span<const Receiver> receivers, std::span<const double> weight,
                                          const PointGatherOptions& options, Progress& progress) const;
 
-    std::vector<std::size_t> patches() const;      //!< of the meshes, the coarsest first
-    std::uint32_t lines() const { return lines_; } //!< per patch of the finest mesh
+    std::vector<std::size_t> patches() const;       //!< of the meshes, the coarsest first
+    std::uint32_t lines() const { return lines_; }  //!< per patch of the finest mesh
+    double imbalance() const { return imbalance_; } //!< of the energy on the mesh where it is largest
 
 private:
     using Field = std::vector<RgbSum>;
@@ -74,6 +75,7 @@ private:
     std::vector<Level> levels_;     ///< the coarsest first
     std::vector<Field> fewerLines_; ///< as Level::irradiance, on the finest mesh, with a quarter of the lines
     std::uint32_t lines_ = 0;
+    double imbalance_ = 0.0;
 };
 
 } // namespace lambert

@@ -175,6 +175,7 @@ Json vplComparisonJson(const VplComparison& comparison, const VplPictures& pictu
                          {"mean", mean},
                          {"patches", comparison.referencePatches},
                          {"lines_per_patch", comparison.referenceLines},
+                         {"imbalance", comparison.referenceImbalance},
                          {"order", reference.order},
                          {"order_found", reference.orderFound},
                          {"seconds", comparison.referenceSeconds}};
@@ -246,9 +247,10 @@ std::string vplComparisonText(const VplComparison& comparison) {
         text += '\n';
     }
     const ReferenceLight& reference = comparison.reference;
-    text += fmt::format("reference: patch radiosity, {} patches, {} lines each, extrapolated with order {:.2f} ({})\n",
+    text += fmt::format("reference: patch radiosity, {} patches, {} lines each, extrapolated with order {:.2f} ({}), "
+                        "energy imbalance {:.2g}\n",
                         fmt::join(comparison.referencePatches, ", "), comparison.referenceLines, reference.order,
-                        reference.orderFound ? "found" : "assumed");
+                        reference.orderFound ? "found" : "assumed", comparison.referenceImbalance);
     text += fmt::format("its own error: {} (mesh {}, transport {}, gathering {})\n", percentText(own / mean),
                         percentText(reference.rms.mesh / mean), percentText(reference.rms.transport / mean),
                         percentText(reference.rms.gathering / mean));

@@ -96,7 +96,7 @@ TEST(BakeScene, TwoSidedSheetIsLitOnBothSides) {
     }
     EXPECT_GT(front, 2.0 * back); // the lamp is above
     EXPECT_GT(back, 0.05);
-    EXPECT_EQ(baked.rows.backFaceFraction, 0.0);
+    EXPECT_EQ(baked.blackBacks.rays, 0.0);
 }
 
 TEST(BakeScene, TwoSheetsBackToBackAreLitLikeOneOfTwoSides) {
@@ -111,7 +111,7 @@ TEST(BakeScene, TwoSheetsBackToBackAreLitLikeOneOfTwoSides) {
         flux[baked.mesh.material[i]] += static_cast<double>(baked.mesh.area[i]) * baked.solution.irradiance[i].x;
     EXPECT_NEAR(flux[0], 0.2, 0.02); // C-11: 0.19982, and what comes back
     EXPECT_EQ(flux[1], 0.0);
-    EXPECT_EQ(baked.rows.backFaceFraction, 0.0);
+    EXPECT_EQ(baked.blackBacks.rays, 0.0);
 }
 
 TEST(BakeScene, ASceneWithoutLightNamesTheOption) {

@@ -143,7 +143,7 @@ TEST(TexturedScenes, HolesKeepTheEnergyBalanceAndClosure) {
     const BakedScene baked = bake(scene, 0.1, 0, 48);
     EXPECT_NEAR(baked.solution.energy.imbalance(), 0.0, 1e-3);
     EXPECT_LT(baked.rows.largestClosureError, 1e-6); // entries are rounded to float
-    EXPECT_LT(baked.rows.backFaceFraction, 1e-4);    // the back of the lamp, a millimetre below the ceiling
+    EXPECT_LT(baked.blackBacks.rays, 1e-4);          // the back of the lamp, a millimetre below the ceiling
 }
 
 TEST(TexturedScenes, HolesKeepReciprocityInTheMean) {

@@ -280,15 +280,17 @@ class Quality(BatchTest):
     def report(self, *options):
         return self.bake(self.write("scenes/a.obj", box(1)), "--resolution", "16", *options)
 
-    def test_presets_change_patches_and_tolerance_and_options_win(self):
+    def test_presets_change_patches_tolerance_and_sky_rays_and_options_win(self):
         preview, normal = self.report("--quality", "preview"), self.report("--quality", "normal")
         self.assertEqual(normal["patches"], self.report()["patches"])
         self.assert_close(preview["patches"], 1006, 0.05)
         self.assert_close(normal["patches"], 5006, 0.05)
         self.assertEqual([r["options"]["tolerance"] for r in (preview, normal)], [1e-3, 1e-4])
-        finer = self.report("--quality", "preview", "--patches", "200", "--tolerance", "1e-2")
+        self.assertEqual([r["options"]["sky_rays"] for r in (preview, normal)], [512, 4096])
+        finer = self.report("--quality", "preview", "--patches", "200", "--tolerance", "1e-2", "--sky-rays", "64")
         self.assert_close(finer["patches"], 200, 0.1)
         self.assertEqual(finer["options"]["tolerance"], 1e-2)
+        self.assertEqual(finer["options"]["sky_rays"], 64)
         self.assertEqual(finer["options"]["quality"], "preview")
 
 

@@ -181,12 +181,29 @@ class Groups(FormFactorsTest):
             self.assert_close(group["factors"][i ^ 1], expected, 2e-3, group["name"])  # hemicubes of 128 pixels
         lines = [line.split(",") for line in table.read_text().splitlines() if not line.startswith("#")]
         self.assertEqual(lines[0][:3], ["group", "area", "F to x0"])
+        self.assertEqual(lines[0][-2:], ["row_sum", "reciprocity_error"])
         self.assertEqual(len(lines), 7)
         self.assert_close(float(lines[1][3]), expected, 2e-3)
 
     def test_the_table_stands_on_stdout(self):
         done = self.run_well("formfactors", CUBE, "--patches", 54, "--resolution", 32, "--group-by", "node", "--quiet")
         self.assertIn("F from", done.stdout)
+
+    def test_tables_say_how_far_rows_and_pairs_can_be_trusted(self):
+        small = (CUBE, "--patches", 54, "--resolution", 32, "--group-by", "node")
+        report = self.factors(*small)
+        printed = self.run_well("formfactors", *small).stdout
+        for word in ("(sum)", "(asymmetry)", "reciprocity: A F of both directions"):
+            self.assertIn(word, printed)
+        for group in report["groups"]:
+            self.assertAlmostEqual(group["row_sum"], 1, 6)  # rows of hemicubes are stored as floats
+            # Nine hemicubes of 32 pixels: some tenths of a percent, and no more than the worst pair of all.
+            self.assertLessEqual(0, group["reciprocity_error"])
+            self.assertLessEqual(group["reciprocity_error"], report["group_reciprocity"]["worst_error"])
+        self.assertLess(report["group_reciprocity"]["worst_error"], .02)
+        self.assertLessEqual(report["group_reciprocity"]["rms_error"], report["group_reciprocity"]["worst_error"])
+        repaired = self.factors(*small, "--repair")
+        self.assertLess(repaired["group_reciprocity"]["worst_error"], 1e-6)
 
     def test_black_cube_gives_off_what_its_factors_say(self):
         # One face hot, all others cold and black: Q = σ T⁴ (1 − F_11), to each other face its factor's part.

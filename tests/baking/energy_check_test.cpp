@@ -1,0 +1,134 @@
+#include "baking/bake_scene.h"
+#include "baking/factor_diagnosis.h"
+#include "scene/example_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace lambert {
+namespace {
+
+/// A closed room with a lamp of two sides near its ceiling: one viewpoint per patch of the ceiling sees far too much of it, or
+/// too little.
+Scene roomWithNearLamp() {
+    const Material wall = greyMaterial("wall", 0.6F);
+    Scene scene = boxScene(glm::vec3(2.0F), {wall, wall, wall, wall, wall, wall});
+    scene.materials.push_back(greyMaterial("lamp", 0.0F, 1.0F));
+    scene.materials.back().twoSided = true;
+    addQuad(scene, {{{0.9F, 0.9F, 1.98F}, {1.1F, 0.9F, 1.98F}, {1.1F, 1.1F, 1.98F}, {0.9F, 1.1F, 1.98F}}}, 6);
+    return scene;
+}
+
+BakeOptions coarse() {
+    BakeOptions options;
+    options.mesh.patches = 200;
+    options.mesh.splitContacts = false;
+    options.formFactors.transport.resolution = 32;
+    options.solver.tolerance = 1e-6;
+    return options;
+}
+
+/// What a residual of 1e-6 leaves out at most: it is relative to the RMS of a lamp of 0.08 of 24 m², and what is missing would have been passed on
+/// 1 / (1 − 0.6) times.
+constexpr double kResidual = 1e-6 * 17.4 * 2.5;
+
+BakedScene bake(const BakeOptions& options) {
+    Progress progress;
+    return bakeScene(roomWithNearLamp(), options, progress);
+}
+
+TEST(EnergyCheck, WithoutRepairIsTheImbalanceOfTheSolution) {
+    const BakedScene baked = bake(coarse());
+    ASSERT_TRUE(baked.energyCheck.beforeRepair);
+    EXPECT_GT(std::abs(*baked.energyCheck.beforeRepair), kImbalanceMissed);
+    // Both are the same sum in another order.
+    EXPECT_NEAR(*baked.energyCheck.beforeRepair, baked.solution.energy.imbalance(), kResidual);
+    EXPECT_TRUE(baked.energyCheck.missed());
+}
+
+TEST(EnergyCheck, SeesThroughARepair) {
+    const BakedScene raw = bake(coarse());
+    BakeOptions options = coarse();
+    options.formFactors.repair = true;
+    const BakedScene repaired = bake(options);
+    EXPECT_NEAR(repaired.solution.energy.imbalance(), 0.0, 1e-5);
+    EXPECT_TRUE(repaired.energyCheck.missed());
+    // Another light, by other factors: of the same sign and size.
+    const double before = raw.solution.energy.imbalance();
+    EXPECT_NEAR(*repaired.energyCheck.beforeRepair / before, 1.0, 0.5);
+    EXPECT_EQ(repaired.energyCheck.material, "lamp");
+    ASSERT_EQ(repaired.warnings.size(), 1U);
+    for (const char* part : {"before repair", "\"lamp\"", "--hemicubes 4", "--solver stochastic", "exit code 1"})
+        EXPECT_NE(repaired.warnings[0].find(part), std::string::npos) << part << ": " << repaired.warnings[0];
+}
+
+TEST(EnergyCheck, SeesThroughShooting) {
+    BakeOptions options = coarse();
+    options.solver.method = SolverMethod::Southwell;
+    const BakedScene baked = bake(options);
+    EXPECT_NEAR(baked.solution.energy.imbalance(), 0.0, kResidual);
+    EXPECT_TRUE(baked.energyCheck.missed());
+}
+
+TEST(EnergyCheck, BouncesThatWereLeftOutAreNoError) {
+    BakeOptions options;
+    options.mesh.patches = 400;
+    options.formFactors.transport.resolution = 64;
+    options.solver.method = SolverMethod::Jacobi;
+    options.solver.bounces = 1;
+    Progress progress;
+    const BakedScene baked = bakeScene(roomWithBoxScene(), options, progress);
+    EXPECT_GT(baked.solution.energy.imbalance(), 0.1);
+    EXPECT_LT(std::abs(baked.energyCheck.judged), kImbalanceTold);
+    EXPECT_TRUE(baked.warnings.empty());
+}
+
+TEST(EnergyCheck, LinesKeepTheEnergyWhereHemicubesDoNot) {
+    BakeOptions options = coarse();
+    options.solver.method = SolverMethod::Stochastic;
+    const BakedScene baked = bake(options);
+    EXPECT_FALSE(baked.energyCheck.beforeRepair);
+    EXPECT_LT(std::abs(baked.energyCheck.judged), kImbalanceTold);
+    EXPECT_TRUE(baked.warnings.empty());
+}
+
+TEST(EnergyCheck, SaysNothingOfARoomWithoutNearFaces) {
+    BakeOptions options = coarse();
+    options.mesh.splitContacts = true;
+    options.mesh.patches = 1000;
+    options.formFactors.transport.resolution = 64;
+    Progress progress;
+    const BakedScene baked = bakeScene(roomWithBoxScene(), options, progress);
+    EXPECT_LT(std::abs(baked.energyCheck.judged), kImbalanceTold);
+    EXPECT_TRUE(baked.warnings.empty());
+}
+
+TEST(FactorDiagnosis, TellsOfARepairThatMovedMoreThanTheStatedError) {
+    TransportPlan plan;
+    plan.options.method = TransportMethod::ClosedForm;
+    plan.options.error = 1e-4;
+    RepairReport report;
+    report.rowChange = 0.5e-4;
+    EXPECT_TRUE(repairWarnings(plan, report).empty());
+    report.rowChange = 0.01;
+    ASSERT_EQ(repairWarnings(plan, report).size(), 1U);
+    EXPECT_NE(repairWarnings(plan, report)[0].find("--form-factor-error"), std::string::npos);
+    plan.options.method = TransportMethod::Hemicube; // states none
+    EXPECT_TRUE(repairWarnings(plan, report).empty());
+}
+
+TEST(FactorDiagnosis, NamesAWayOutForEveryMethod) {
+    TransportPlan plan;
+    for (const std::string& name : methodNames()) {
+        plan.options.method = methodByName(name).value();
+        const std::string text = causeAndRemedy(plan, true);
+        EXPECT_NE(text.find("; try "), std::string::npos) << name;
+        EXPECT_NE(text.find("--solver stochastic"), std::string::npos) << name;
+        EXPECT_EQ(causeAndRemedy(plan, false).find("--solver"), std::string::npos) << name;
+    }
+}
+
+} // namespace
+} // namespace lambert
