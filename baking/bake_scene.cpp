@@ -120,9 +120,13 @@ void solveStored(const BakeOptions& options, const Task& task, BakedScene& resul
     result.matrixCheckpoint = std::move(obtained.checkpoint);
     result.rayCount = result.plan ? result.plan->rays : 0;
     StoredRows rows(matrix);
-    for (std::size_t i = 0; i < matrix.size(); ++i)
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
         result.rows.largestClosureError =
             std::max(result.rows.largestClosureError, std::abs(matrix.row(i).sum() - 1.0));
+        const auto error = static_cast<double>(matrix.error(i));
+        result.rows.meanError += error / static_cast<double>(matrix.size());
+        result.rows.largestError = std::max(result.rows.largestError, error);
+    }
     result.rows.entries = matrix.entryCount();
     result.rows.bytes = matrix.bytes();
     const std::vector<double> deficit =

@@ -38,8 +38,9 @@ struct BakeSeconds {
 
 /// How the computed rows keep their identities.
 struct RowQuality {
-    double largestClosureError = 0.0; //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
-    std::size_t entries = 0;          //!< of the matrix; 0 without one
+    double largestClosureError = 0.0;           //!< max |Σ_j F_ij + F_i,back + F_i,out − 1|
+    double meanError = 0.0, largestError = 0.0; //!< of the rows, Σ_j |ΔF_ij| as the method knows it; 0: unknown
+    std::size_t entries = 0;                    //!< of the matrix; 0 without one
     std::size_t bytes = 0;
 };
 

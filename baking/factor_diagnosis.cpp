@@ -10,6 +10,7 @@ namespace {
 /// What a method promises of the sum of a row's errors.
 std::optional<double> statedError(const TransportPlan& plan) {
     if (plan.options.method == TransportMethod::ClosedForm) return plan.options.error;
+    if (plan.options.method == TransportMethod::Auto) return plan.options.rowError;
     return std::nullopt;
 }
 
@@ -33,6 +34,11 @@ std::string causeAndRemedy(const std::optional<TransportPlan>& plan, bool bySolv
     } else {
         const TransportOptions& o = plan->options;
         switch (o.method) {
+        case TransportMethod::Auto:
+            cause = "patches lie partly inside objects, or their hidden parts are not resolved";
+            ways.emplace_back("a smaller --form-factor-error");
+            ways.emplace_back("a higher --quality");
+            break;
         case TransportMethod::Hemicube:
         case TransportMethod::Hemisphere:
             computedBetter();

@@ -202,6 +202,8 @@ Json bakeReport(const BakeReportInput& in) {
     report["form_factors"] = {{"entries", baked.rows.entries},
                               {"bytes", baked.rows.bytes},
                               {"largest_closure_error", baked.rows.largestClosureError},
+                              {"mean_row_error", baked.rows.meanError},
+                              {"largest_row_error", baked.rows.largestError},
                               {"back_face_fraction", baked.blackBacks.rays},
                               {"repair", repairJson(baked.repair)}};
     report["seconds"] = {{"read", in.readSeconds},

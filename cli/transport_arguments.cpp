@@ -26,7 +26,8 @@ void refuseUnused(const TransportArguments& a, TransportMethod method) {
         if (a.sampler) refuse("--sampler");
     }
     if (a.lineSet && method != TransportMethod::GlobalLines) refuse("--line-set");
-    if (a.formFactorError && method != TransportMethod::ClosedForm) refuse("--form-factor-error");
+    if (a.formFactorError && method != TransportMethod::ClosedForm && method != TransportMethod::Auto)
+        refuse("--form-factor-error");
 }
 
 /// A solver that computes its rows takes them as they come.
@@ -51,10 +52,9 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
                                double high) {
         command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
     };
-    addChoice(
-        "--method", a.method,
-        fmt::format("How form factors are computed, or light without them: {} [hemicube]", fmt::join(methods, ", ")),
-        "METHOD", methods);
+    addChoice("--method", a.method,
+              fmt::format("How form factors are computed, or light without them: {} [auto]", fmt::join(methods, ", ")),
+              "METHOD", methods);
     addNumber(
         "--resolution", a.resolution,
         "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a multiple of 4 "
@@ -76,7 +76,9 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
     addChoice("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]", "SET",
               {"chords", "bundles"});
     addNumber("--form-factor-error", a.formFactorError,
-              "Closed form: aimed at in partly hidden pairs, relative, 1e-8 to 0.1 [1e-4]", "E", 1e-8, 0.1);
+              "auto: aimed at in a row, sum of |error| over its factors, 1e-5 to 0.5 [0.01]; closed form: in partly "
+              "hidden pairs, relative, 1e-8 to 0.1 [1e-4]",
+              "E", 1e-8, 0.5);
     addChoice(
         "--storage", a.storage,
         "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), auto: "
@@ -110,14 +112,15 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     MatrixSource source;
     TransportOptions& options = source.transport;
     const Quality& quality = qualityOf(a.quality);
-    options.method = methodByName(a.method.value_or("hemicube")).value();
+    options.method = methodByName(a.method.value_or("auto")).value();
     options.resolution = a.resolution;
     options.perPatch = a.hemicubes.value_or(1);
     options.randomRotation = a.rotation.value_or("random") == "random";
     options.lines = a.lines;
     options.sampler = samplerByName(a.sampler.value_or("sobol")).value();
     options.lineSet = a.lineSet.value_or("chords") == "bundles" ? LineSet::Bundles : LineSet::Chords;
-    options.error = a.formFactorError.value_or(options.error);
+    (options.method == TransportMethod::Auto ? options.rowError : options.error) =
+        a.formFactorError.value_or(options.method == TransportMethod::Auto ? options.rowError : options.error);
     options.seed = run.seed;
     options.stored = a.storage != "none";
     options.storage = storageByName(a.storage); // no value for auto
@@ -155,8 +158,10 @@ nlohmann::ordered_json matrixOptionsJson(const MatrixSource& source, const std::
     json["sampler"] = lines ? Json(nameOf(source.transport.sampler)) : Json(nullptr);
     const bool global = plan && method == TransportMethod::GlobalLines;
     json["line_set"] = global ? Json(plan->options.lineSet == LineSet::Bundles ? "bundles" : "chords") : Json(nullptr);
-    json["form_factor_error"] =
-        plan && method == TransportMethod::ClosedForm ? Json(plan->options.error) : Json(nullptr);
+    json["form_factor_error"] = !plan                                   ? Json(nullptr)
+                                : method == TransportMethod::ClosedForm ? Json(plan->options.error)
+                                : method == TransportMethod::Auto       ? Json(plan->options.rowError)
+                                                                        : Json(nullptr);
     const auto storage = plan ? plan->options.storage : source.transport.storage;
     json["storage"] = source.transport.stored ? nameOf(storage.value_or(MatrixStorage::Double)) : "none";
     json["memory_limit"] = source.transport.memoryLimit;

@@ -19,19 +19,25 @@ TransportOptions ComparedMethod::options(double effort, std::uint64_t seed, Matr
     if (hasResolution(method)) options.resolution = static_cast<int>(effort);
     if (hasLines(method)) options.lines = static_cast<std::uint32_t>(effort);
     if (method == TransportMethod::ClosedForm) options.error = effort;
+    if (method == TransportMethod::Auto) {
+        options.rowError = effort;
+        options.mostRays = 1e12; // as many as the error takes
+    }
     return options;
 }
 
 ComputedMatrix ComparedMethod::compute(const MeshedScene& scene, double effort, std::uint64_t seed,
                                        MatrixStorage storage, Progress& progress) const {
     const TransportPlan plan = planTransport(options(effort, seed, storage), scene.mesh, *scene.rays, progress);
-    return {computeMatrix(plan, scene.mesh, *scene.rays, progress).matrix, plan.rays};
+    TransportMatrix computed = computeMatrix(plan, scene.mesh, *scene.rays, progress);
+    return {std::move(computed.matrix), computed.rays};
 }
 
 std::span<const ComparedMethod> comparedMethods() {
     static const std::vector<ComparedMethod> kMethods = [] {
         using enum TransportMethod;
         std::vector<ComparedMethod> methods{
+            {Auto, "", "error of a row", false, {0.1, 0.03, 0.01}, true, 1e-5, 0.5, 0},
             {Hemicube, "", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 2},
             {Hemisphere, "", "resolution", false, {16, 32, 64, 128}, true, 4, 4096, 4},
             {LocalLines, "", "lines per patch", true, {256, 1024, 4096, 16384}, true, 1, 1 << 24, 1},

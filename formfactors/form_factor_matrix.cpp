@@ -122,6 +122,7 @@ void FormFactorMatrix::setRow(std::size_t patch, const FormFactorRow& row) {
     packed.count = static_cast<std::uint32_t>(row.entries.size());
     packed.back = row.back;
     packed.out = row.out;
+    packed.error = row.error;
     byStorage([&]<typename Value>(Value) { packPlain<Value>(row, packed); }, [&] { packCompact(row, packed); });
     rows_[patch] = std::move(packed);
 }
@@ -132,13 +133,15 @@ namespace {
 struct RowHeader {
     double scale, back, out;
     std::uint32_t count, counts;
+    float error;
+    std::uint32_t unused;
 };
 
 } // namespace
 
 void FormFactorMatrix::appendBytes(std::size_t patch, std::vector<std::byte>& bytes) const {
     const PackedRow& row = rows_[patch];
-    const RowHeader header{row.scale, row.back, row.out, row.count, row.counts ? 1U : 0U};
+    const RowHeader header{row.scale, row.back, row.out, row.count, row.counts ? 1U : 0U, row.error, 0};
     const auto headerBytes = std::as_bytes(std::span(&header, 1));
     bytes.insert(bytes.end(), headerBytes.begin(), headerBytes.end());
     if (row.bytes > 0) bytes.insert(bytes.end(), row.data.get(), row.data.get() + row.bytes);
@@ -158,6 +161,7 @@ bool FormFactorMatrix::setBytes(std::size_t patch, std::span<const std::byte> by
     row.out = header.out;
     row.count = header.count;
     row.counts = header.counts != 0;
+    row.error = header.error;
     row.bytes = static_cast<std::uint32_t>(bytes.size());
     row.data = std::make_unique_for_overwrite<std::byte[]>(row.bytes);
     std::copy(bytes.begin(), bytes.end(), row.data.get());
@@ -170,6 +174,7 @@ FormFactorRow FormFactorMatrix::row(std::size_t patch) const {
     FormFactorRow result;
     result.back = packed.back;
     result.out = packed.out;
+    result.error = packed.error;
     if (packed.counts) result.lines = static_cast<std::uint32_t>(std::lround(1.0 / packed.scale));
     result.entries.reserve(packed.count);
     visit(patch, [&](std::uint32_t j, double value) { result.entries.push_back({j, value}); });

@@ -24,6 +24,7 @@ struct FormFactorRow {
     double back = 0.0;               //!< F_i,back: meets a black back face
     double out = 0.0;                //!< F_i,out: leaves the scene
     std::uint32_t lines = 0;         //!< every factor is a whole multiple of 1 / lines; 0: not of that kind
+    float error = 0.0F;              //!< what the method knows of Σ_j |ΔF_ij|; 0: nothing
 
     /// Σ_j F_ij + back + out.
     double sum() const;
@@ -63,6 +64,7 @@ public:
 
     double back(std::size_t patch) const { return rows_[patch].back; }
     double out(std::size_t patch) const { return rows_[patch].out; }
+    float error(std::size_t patch) const { return rows_[patch].error; } //!< see FormFactorRow
     std::size_t entryCount(std::size_t patch) const { return rows_[patch].count; }
     /// Whether nothing is known of the patch: no line has met it. Such rows do not sum to 1.
     bool isEmpty(std::size_t patch) const {
@@ -85,6 +87,7 @@ private:
         std::unique_ptr<std::byte[]> data;
         std::uint32_t count = 0;
         std::uint32_t bytes = 0;
+        float error = 0.0F;
         bool counts = false; ///< compact codes are numbers of lines, not logarithms
         double scale = 0.0;  ///< of compact codes
         double back = 0.0, out = 0.0;

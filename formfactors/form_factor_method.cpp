@@ -22,6 +22,7 @@ void RowAccumulator::take(FormFactorRow& row) {
     row.out = drain(out());
     row.entries.clear();
     row.lines = std::exchange(lines_, 0);
+    row.error = std::exchange(error_, 0.0F);
     for (std::size_t i = 0; i < touched_.size(); ++i) {
         for (std::uint64_t word = std::exchange(touched_[i], 0); word != 0; word &= word - 1) {
             const auto patch = static_cast<std::uint32_t>(64 * i + static_cast<std::size_t>(std::countr_zero(word)));

@@ -25,6 +25,8 @@ public:
     }
     /// Says that all sums are whole multiples of 1 / lines; see FormFactorRow::lines.
     void setLines(std::uint32_t lines) { lines_ = lines; }
+    /// See FormFactorRow::error.
+    void setError(double error) { error_ = static_cast<float>(error); }
     /// Multiplies all sums.
     void scale(double factor);
     std::uint32_t back() const { return back_; }    ///< target for what meets a black back face
@@ -38,6 +40,7 @@ private:
     std::vector<double> sums_;           ///< #patches + 2
     std::vector<std::uint64_t> touched_; ///< one bit per target that something was added to
     std::uint32_t lines_ = 0;
+    float error_ = 0.0F;
 };
 
 /// A way to compute the form factors from one patch to all others. Thread-safe.
@@ -52,6 +55,8 @@ public:
                           RowAccumulator& accumulator) const;
     virtual std::size_t patchCount() const = 0;
     virtual std::uint64_t raysPerRow() const = 0;
+    /// By all rows so far, where rows differ; 0: each takes raysPerRow().
+    virtual std::uint64_t raysTraced() const { return 0; }
 };
 
 class MatrixJournal;

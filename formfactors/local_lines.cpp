@@ -90,9 +90,27 @@ void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
               arrays.originZ);
 }
 
+void LocalLines::makeLines(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index, Lines& lines) const {
+    makeDirections(seedOf(index, 0x504F494E, options_.seed), normal, lines);
+    const LineArrays l(lines.coordinates, options_.lines);
+    std::fill_n(l.originX, options_.lines, origin.x);
+    std::fill_n(l.originY, options_.lines, origin.y);
+    std::fill_n(l.originZ, options_.lines, origin.z);
+}
+
 std::vector<Ray> LocalLines::lines(std::uint32_t patch) const {
     Lines lines;
     makeLines(patch, lines);
+    return inOrder(lines);
+}
+
+std::vector<Ray> LocalLines::lines(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index) const {
+    Lines lines;
+    makeLines(origin, normal, index, lines);
+    return inOrder(lines);
+}
+
+std::vector<Ray> LocalLines::inOrder(Lines& lines) const {
     const LineArrays l(lines.coordinates, options_.lines);
     std::vector<Ray> result;
     for (const std::uint32_t i : lines.order)
@@ -110,11 +128,7 @@ void LocalLines::row(std::uint32_t patch, RowAccumulator& accumulator) const {
 void LocalLines::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
                           RowAccumulator& accumulator) const {
     thread_local Lines lines;
-    makeDirections(seedOf(index, 0x504F494E, options_.seed), normal, lines);
-    const LineArrays l(lines.coordinates, options_.lines);
-    std::fill_n(l.originX, options_.lines, origin.x);
-    std::fill_n(l.originY, options_.lines, origin.y);
-    std::fill_n(l.originZ, options_.lines, origin.z);
+    makeLines(origin, normal, index, lines);
     trace(lines, accumulator);
 }
 

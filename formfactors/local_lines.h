@@ -35,6 +35,8 @@ public:
 
     /// The lines of a patch in the order in which they are traced: neighbours have neighbouring directions.
     std::vector<Ray> lines(std::uint32_t patch) const;
+    /// The same of a point, as pointRow takes it.
+    std::vector<Ray> lines(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index) const;
 
 private:
     struct Lines {
@@ -47,6 +49,8 @@ private:
     /// Directions and order of the lines of one seed.
     void makeDirections(std::uint64_t seed, const glm::vec3& normal, Lines& lines) const;
     void makeLines(std::uint32_t patch, Lines& lines) const;
+    void makeLines(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index, Lines& lines) const;
+    std::vector<Ray> inOrder(Lines& lines) const;
     void trace(Lines& lines, RowAccumulator& accumulator) const;
 
     const PatchMesh& mesh_;

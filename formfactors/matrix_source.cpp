@@ -108,6 +108,7 @@ SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, cons
                                                    matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
         TransportMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.checkpoint.get());
         result.matrix = std::move(computed.matrix);
+        result.plan->rays = computed.rays;
         weights = std::move(computed.repairWeights);
     }
     if (source.repair) {

@@ -8,6 +8,7 @@
 #include "formfactors/hemisphere.h"
 #include "formfactors/local_lines.h"
 #include "formfactors/matrix_checkpoint.h"
+#include "formfactors/visibility_sampling.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,8 @@ struct MethodTraits {
     bool resolution, lines, rows, pointRows;
 };
 
-constexpr std::array kMethods{MethodTraits{TransportMethod::Hemicube, "hemicube", true, false, true, true},
+constexpr std::array kMethods{MethodTraits{TransportMethod::Auto, "auto", false, false, true, true},
+                              MethodTraits{TransportMethod::Hemicube, "hemicube", true, false, true, true},
                               MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false, true, true},
                               MethodTraits{TransportMethod::LocalLines, "local-lines", false, true, true, true},
                               MethodTraits{TransportMethod::GlobalLines, "global-lines", false, true, false, false},
@@ -59,6 +61,7 @@ std::vector<std::uint32_t> effortLadder(const TransportOptions& o, std::size_t p
         ladder.push_back(std::bit_floor(static_cast<std::uint32_t>(std::clamp(lines, 65536.0, 2e9))));
         break;
     }
+    case TransportMethod::Auto:
     case TransportMethod::ClosedForm:
         ladder.push_back(0);
         break;
@@ -161,6 +164,8 @@ std::string TransportPlan::effort() const {
         text +=
             fmt::format(", {} {}{}", *options.lines, options.lineSet == LineSet::Bundles ? "lines in bundles" : "lines",
                         hasRows(options.method) ? " per patch" : "");
+    if (options.method == TransportMethod::Auto)
+        text += fmt::format(", error {:g} per row, {} rays at most", options.rowError, options.mostRaysPerRow);
     if (options.method == TransportMethod::ClosedForm) text += fmt::format(", error {:g}", options.error);
     return text;
 }
@@ -178,6 +183,7 @@ void checkTransport(const TransportOptions& o) {
     }
     if (o.method == TransportMethod::LocalLines && o.lines && (*o.lines < 1 || *o.lines > 1U << 24))
         refuse("--lines", *o.lines, "1 to 16777216 per patch");
+    if (!(o.rowError >= 1e-5 && o.rowError <= 0.5)) refuse("--form-factor-error", o.rowError, "1e-5 to 0.5");
     if (!(o.error >= 1e-8 && o.error <= 0.1)) refuse("--form-factor-error", o.error, "1e-8 to 0.1");
     if (!o.stored && !hasRows(o.method))
         throw UsageError(fmt::format("--storage none: {} computes no single rows", nameOf(o.method)));
@@ -193,7 +199,11 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
         given ? std::vector<std::uint32_t>{0} : effortLadder(options, mesh.size());
     for (const std::uint32_t effort : ladder) {
         TransportPlan plan = withEffort(options, effort);
+        if (options.method == TransportMethod::Auto)
+            plan.options.mostRaysPerRow =
+                static_cast<std::uint32_t>(std::clamp(options.mostRays / patches, 4096.0, 16777216.0));
         const auto method = hasRows(options.method) ? makeMethod(plan, mesh, rays) : nullptr;
+        if (options.method == TransportMethod::Auto) pilotEntriesPerRow(*method, progress); // rows differ
         plan.rays = method ? method->raysPerRow() * mesh.size() : *plan.options.lines;
         const bool last = effort == ladder.back();
         if (!last && static_cast<double>(plan.rays) > options.mostRays) continue;
@@ -226,6 +236,9 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
             mesh, rays, HemisphereOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
     case TransportMethod::LocalLines:
         return std::make_unique<LocalLines>(mesh, rays, LocalLinesOptions{o.lines.value(), o.sampler, o.seed});
+    case TransportMethod::Auto:
+        return std::make_unique<VisibilitySampling>(mesh, rays,
+                                                    VisibilitySamplingOptions{o.rowError, o.mostRaysPerRow, o.seed});
     case TransportMethod::ClosedForm:
         return std::make_unique<ClosedForm>(mesh, rays, ClosedFormOptions{o.error});
     case TransportMethod::GlobalLines:
@@ -240,13 +253,15 @@ TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, 
     const MatrixStorage storage = o.storage.value();
     if (hasRows(o.method)) {
         MatrixJournal* const journal = checkpoint ? &checkpoint->rows.value() : nullptr;
-        return {computeMatrix(*makeMethod(plan, mesh, rays), storage, progress, journal), repairWeights(mesh)};
+        const auto method = makeMethod(plan, mesh, rays);
+        FormFactorMatrix matrix = computeMatrix(*method, storage, progress, journal);
+        return {std::move(matrix), repairWeights(mesh), method->raysTraced() > 0 ? method->raysTraced() : plan.rays};
     }
     const LineCaster caster(rays.scene());
     GlobalLineOptions options{.lines = o.lines.value(), .set = o.lineSet, .sampler = o.sampler, .seed = o.seed};
     GlobalLineCounts counts(mesh.size());
     traceLines(GlobalLines(mesh, caster, options), counts, progress, checkpoint);
-    return {counts.matrix(storage, progress), counts.repairWeights(mesh.area)};
+    return {counts.matrix(storage, progress), counts.repairWeights(mesh.area), plan.rays};
 }
 
 std::vector<double> repairWeights(const PatchMesh& mesh) {

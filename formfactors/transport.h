@@ -21,7 +21,7 @@ class MatrixCheckpoint;
 
 /// The one place where a way to compute form factors is made from its name and options: what a new method needs beside its
 /// own files is a line in each table and switch of transport.cpp.
-enum class TransportMethod { Hemicube, Hemisphere, LocalLines, GlobalLines, ClosedForm };
+enum class TransportMethod { Auto, Hemicube, Hemisphere, LocalLines, GlobalLines, ClosedForm };
 
 std::optional<TransportMethod> methodByName(std::string_view name);
 std::string_view nameOf(TransportMethod method);
@@ -32,7 +32,7 @@ bool hasRows(TransportMethod method);       ///< computes row by row, see makeMe
 bool hasPointRows(TransportMethod method);  ///< see FormFactorMethod::pointRow
 
 struct TransportOptions {
-    TransportMethod method = TransportMethod::Hemicube;
+    TransportMethod method = TransportMethod::Auto;
 
     std::optional<int> resolution; //!< of hemicubes and hemispheres, see there; none: chosen by the bounds below
     int perPatch = 1;              //!< hemicubes or hemispheres per patch
@@ -44,7 +44,9 @@ struct TransportOptions {
     Sampler sampler = Sampler::Sobol;  //!< of lines
     LineSet lineSet = LineSet::Chords; //!< of global lines
 
-    double error = 1e-4; //!< of the closed form, see there
+    double rowError = 0.01;               //!< of auto: Σ_j |ΔF_ij| aimed at, see VisibilitySamplingOptions::error
+    std::uint32_t mostRaysPerRow = 65536; //!< filled in by a plan, from mostRays
+    double error = 1e-4;                  //!< of the closed form, see there
 
     std::uint64_t seed = 1;
     bool stored = true;                   //!< false: rows are computed whenever they are asked for, no matrix is made
@@ -78,6 +80,7 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
 struct TransportMatrix {
     FormFactorMatrix matrix;
     std::vector<double> repairWeights; //!< #patches, see repair()
+    std::uint64_t rays = 0;            //!< in all
 };
 
 /// The matrix. With a checkpoint, what that holds is taken from it, and all else entered as it is finished. Throws Cancelled; of

@@ -1,0 +1,353 @@
+#include "formfactors/visibility_sampling.h"
+
+#include "core/error.h"
+#include "core/random.h"
+#include "formfactors/closed_form.h"
+#include "formfactors/gauss_exchange.h"
+#include "formfactors/hit_sum.h"
+#include "formfactors/local_lines.h"
+#include "formfactors/pair_rays.h"
+#include "formfactors/quadrature.h"
+#include "meshing/prepare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kQuadratureError = 5e-4; ///< of a row's sum, by the rules of PatchBlocks
+/// The mean error of the share that n rays find visible where some are blocked is about kSpread n^−kRate: the rays of a pair
+/// are spread evenly over both patches. Found on rooms; wrong guesses are mended by further rounds.
+constexpr double kSpread = 0.12;
+constexpr double kRate = 0.625;
+constexpr double kAgreement = 1e-3;   ///< of two rules, so that the finer one is taken to be right to a part of it
+constexpr double kSmallFactor = 1e-6; ///< rules are right enough
+constexpr int kMostRounds = 4;
+constexpr std::uint32_t kMostRaysPerPair = 1U << 20;
+constexpr std::uint32_t kRunLength = 16;  ///< neighbouring pairs that are judged together
+constexpr std::uint32_t kRaysToJudge = 3; ///< per pair, at least
+
+ConvexPolygon polygonOf(const PatchMesh& mesh, std::size_t patch) {
+    ConvexPolygon polygon;
+    for (int k = 0; k < mesh.cornerCount(patch); ++k) polygon.add(glm::dvec3(mesh.position(patch, k)));
+    return polygon;
+}
+
+Plane planeOf(const PatchMesh& mesh, std::size_t patch) {
+    // Of the corners in double: the normal is rounded to single precision.
+    const glm::dvec3 areaVector = polygonAreaVector(polygonOf(mesh, patch).points());
+    const double length = glm::length(areaVector);
+    return Plane::through(glm::dvec3(mesh.centroid[patch]),
+                          length > 0.0 ? areaVector / length : glm::dvec3(mesh.normal[patch]));
+}
+
+double radiusOf(const ConvexPolygon& polygon, const glm::dvec3& centre) {
+    double squared = 0.0;
+    for (const glm::dvec3& p : polygon.points()) squared = std::max(squared, glm::dot(p - centre, p - centre));
+    return std::sqrt(squared);
+}
+
+/// ∫ of what points of one polygon see of the other, in m², by a rule of this order.
+double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, const ConvexPolygon& inner, int order) {
+    thread_local std::vector<WeightedPoint> points;
+    points.clear();
+    appendGaussPoints(outer.points(), order, points);
+    double sum = 0.0;
+    for (const auto& [x, weight] : points) sum += weight * pointToVisiblePolygon(x, normal, inner.points());
+    return sum;
+}
+
+/// A_from F_from,to in m², each in front of the other's plane: to about 1e-3, or where rules of quadrature fail to 1e-6.
+double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane) {
+    const glm::dvec3 fromCentre = from.centre(), toCentre = to.centre();
+    const double fromRadius = radiusOf(from, fromCentre), toRadius = radiusOf(to, toCentre);
+    const bool fromIsSmaller = fromRadius < toRadius;
+    const double smaller = fromIsSmaller ? fromRadius : toRadius;
+    const ConvexPolygon& outer = fromIsSmaller ? from : to;
+    const ConvexPolygon& inner = fromIsSmaller ? to : from;
+    const glm::dvec3& normal = fromIsSmaller ? fromPlane.normal : toPlane.normal;
+    const double gap = (glm::distance(fromCentre, toCentre) - fromRadius - toRadius) / (2.0 * smaller);
+    // A rule of order n errs by ρ^(−2n), ρ = 2 gap + √(4 gap² + 1).
+    const int order = gap > 1.4 ? 2 : gap > 0.7 ? 3 : 4;
+    const double mean = meanOverPoints(outer, normal, inner, order);
+    if (gap > 0.4 || mean < kSmallFactor * smaller * smaller) return mean;
+    // Neighbours that share an edge are smooth too, others need the contour integral.
+    const double finer = meanOverPoints(outer, normal, inner, 6);
+    return std::abs(mean - finer) < kAgreement * finer ? finer : convexExchange(from, fromPlane, to, toPlane);
+}
+
+} // namespace
+
+/// The computation of one row.
+class VisibilitySampling::Row {
+public:
+    Row(const VisibilitySampling& method, const PatchBlocks::Viewer& viewer, const PatchShape& shape,
+        std::uint32_t index, std::uint32_t patch, std::vector<PairSample>& pairs)
+        : method_(method), viewer_(viewer), shape_(shape), index_(index), patch_(patch), pairs_(pairs) {
+        pairs_.clear();
+        if (patch_ != kNone) {
+            polygon_ = polygonOf(method.mesh_, patch_);
+            plane_ = planeOf(method.mesh_, patch_);
+            area_ = glm::length(polygonAreaVector(polygon_.points()));
+        }
+    }
+
+    /// `lines` through the hemisphere, for F_back and F_out.
+    void run(const std::vector<Ray>& lines, RowAccumulator& accumulator) {
+        traceLines(lines);
+        if (lineFront_ > 0.0) {
+            findPairs();
+            PairRays rays(method_.rays_, shape_, method_.shapes_);
+            pilot(rays);
+            sample(rays);
+            method_.raysTraced_ += rays.traced();
+        }
+        method_.raysTraced_ += lines.size();
+        ++method_.rowsDone_;
+        close(accumulator);
+    }
+
+private:
+    void findPairs() {
+        PatchBlocks::Factors factors;
+        for (const PatchBlocks::Block& block : method_.blocks_.blocks()) {
+            if (!PatchBlocks::factors(viewer_, block, method_.tolerance_, factors)) continue;
+            for (std::uint32_t lane = 0; lane < block.count; ++lane) {
+                if (factors.kind[lane] == PatchBlocks::kUnseen) continue;
+                const std::uint32_t patch = block.first + lane;
+                const bool near = factors.kind[lane] == PatchBlocks::kNear;
+                double factor = near ? nearFactor(patch) : static_cast<double>(factors.factor[lane]);
+                if (!method_.mesh_.opacity.empty()) factor *= static_cast<double>(method_.mesh_.opacity[patch]);
+                if (!(factor > 0.0)) continue;
+                PairSample pair;
+                pair.patch = patch;
+                pair.weighted = near;
+                pair.factor = static_cast<float>(factor);
+                pairs_.push_back(pair);
+            }
+        }
+    }
+
+    double nearFactor(std::uint32_t patch) const {
+        const auto t = static_cast<double>(method_.tolerance_);
+        const ConvexPolygon to = polygonOf(method_.mesh_, patch);
+        if (patch_ == kNone) return pointToPolygon(glm::dvec3(viewer_.centre), glm::dvec3(viewer_.normal), to.points());
+        if (patch == patch_) return 0.0;
+        if (cornerHeights(plane_, to.points())[1] <= t) return 0.0;
+        const Plane toPlane = planeOf(method_.mesh_, patch);
+        if (cornerHeights(toPlane, polygon_.points())[1] <= t) return 0.0;
+        ConvexPolygon fromPart, toPart, behind;
+        split(polygon_, toPlane, t, fromPart, behind);
+        split(to, plane_, t, toPart, behind);
+        if (fromPart.empty() || toPart.empty()) return 0.0;
+        return nearExchange(fromPart, plane_, toPart, toPlane) / area_;
+    }
+
+    void traceLines(const std::vector<Ray>& lines) {
+        const std::uint32_t front = 0, back = 1, out = 2;
+        std::uint32_t count[3] = {};
+        RayPacket packet;
+        RayOrigins origins;
+        for (std::size_t first = 0; first < lines.size(); first += RayPacket::kSize) {
+            const int used = static_cast<int>(std::min<std::size_t>(RayPacket::kSize, lines.size() - first));
+            for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+                const Ray& line = lines[first + static_cast<std::size_t>(std::min(lane, used - 1))];
+                origins.x[lane] = line.origin.x;
+                origins.y[lane] = line.origin.y;
+                origins.z[lane] = line.origin.z;
+                packet.directionX[lane] = line.direction.x;
+                packet.directionY[lane] = line.direction.y;
+                packet.directionZ[lane] = line.direction.z;
+                packet.active[lane] = lane < used ? -1 : 0;
+            }
+            method_.rays_.closest(origins, packet);
+            for (int lane = 0; lane < used; ++lane) {
+                const bool met = packet.polygon[lane] != kNone;
+                const bool isFront =
+                    met && (packet.facing[lane] < 0.0F ||
+                            method_.rays_.scene().polygons[packet.polygon[lane]].backMaterial != kNone);
+                ++count[isFront ? front : met ? back : out];
+            }
+        }
+        const auto all = static_cast<double>(lines.size());
+        lineFront_ = count[front] / all;
+        lineBack_ = count[back] / all;
+        lineOut_ = count[out] / all;
+    }
+
+    /// A few rays per pair, which only tell where visibility is mixed.
+    void pilot(PairRays& rays) {
+        const double perFactor = std::clamp(8.0 / method_.options_.error, 256.0, 1e6);
+        for (PairSample& pair : pairs_) {
+            pair.shift = shiftOf(pair.patch, 0);
+            const double wanted = std::ceil(static_cast<double>(pair.factor) * perFactor);
+            pair.wanted = static_cast<std::uint32_t>(std::clamp(wanted, pair.weighted ? 4.0 : 1.0, 4096.0));
+        }
+        rays.trace(pairs_);
+        for (std::size_t first = 0; first < pairs_.size(); first += kRunLength)
+            judge(std::span(pairs_).subspan(first, std::min<std::size_t>(kRunLength, pairs_.size() - first)), rays);
+        for (PairSample& pair : pairs_) pair.restart(shiftOf(pair.patch, 1));
+    }
+
+    /// Which pairs of a run are mixed: in a run of which some rays are blocked, those and the neighbours of those of which
+    /// some are.
+    static void judge(std::span<PairSample> run, PairRays& rays) {
+        std::uint32_t visible = 0, all = 0;
+        for (const PairSample& pair : run) {
+            visible += pair.visible;
+            all += pair.rays;
+        }
+        if (visible == 0 || visible == all) return;
+        std::array<std::uint32_t, kRunLength> few;
+        for (std::size_t k = 0; k < run.size(); ++k) {
+            few[k] = run[k].wanted;
+            run[k].wanted = std::max(few[k], kRaysToJudge);
+        }
+        rays.trace(run);
+        const auto isBlocked = [&](std::size_t k) { return run[k].visible < run[k].rays; };
+        const auto isVisible = [&](std::size_t k) { return run[k].visible > 0; };
+        for (std::size_t k = 0; k < run.size(); ++k) {
+            bool blocked = false, free = false;
+            for (std::size_t n = k - std::min<std::size_t>(k, 1); n < std::min(k + 2, run.size()); ++n) {
+                blocked = blocked || isBlocked(n);
+                free = free || isVisible(n);
+            }
+            run[k].mixed = blocked && free;
+            run[k].wanted = few[k];
+        }
+    }
+
+    /// Fresh rays: as many as the first ones where these agree, else as many as the error asks for.
+    void sample(PairRays& rays) {
+        double atStake = 0.0;
+        for (const PairSample& pair : pairs_)
+            if (pair.mixed) atStake += std::pow(static_cast<double>(pair.factor), 1.0 - kRate * 2.0 / 3.0);
+        double scale = std::pow(kSpread * atStake / method_.options_.error, 1.0 / kRate);
+        double others = 0.0, mixed = 0.0;
+        for (const PairSample& pair : pairs_) {
+            if (pair.mixed)
+                mixed += std::pow(static_cast<double>(pair.factor), 2.0 / 3.0);
+            else
+                others += pair.wanted;
+        }
+        const double room = std::max(0.0, method_.options_.mostRaysPerRow - others);
+        for (int round = 0; round < kMostRounds; ++round) {
+            const double bounded = mixed > 0.0 ? std::min(scale, room / mixed) : scale;
+            for (PairSample& pair : pairs_) {
+                if (!pair.mixed) continue;
+                const double wanted = std::ceil(bounded * std::pow(static_cast<double>(pair.factor), 2.0 / 3.0));
+                pair.wanted = static_cast<std::uint32_t>(std::clamp(
+                    wanted, static_cast<double>(std::max(2U, pair.wanted)), static_cast<double>(kMostRaysPerPair)));
+            }
+            rays.trace(pairs_);
+            assess();
+            if (error_ <= method_.options_.error || bounded < scale || !(mixed > 0.0)) break;
+            scale *= std::min(16.0, std::pow(1.1 * error_ / method_.options_.error, 1.0 / kRate));
+        }
+    }
+
+    /// Σ_j F_ij, and what its halves by even and odd rays tell of its error.
+    void assess() {
+        sum_ = variance_ = error_ = 0.0;
+        for (const PairSample& pair : pairs_) {
+            const double factor = pair.factor;
+            sum_ += factor * pair.visibleShare();
+            const double deviation = 0.5 * factor * (pair.half(0) - pair.half(1));
+            variance_ += deviation * deviation;
+            error_ += std::abs(deviation);
+        }
+    }
+
+    void close(RowAccumulator& accumulator) {
+        const double lineRemainder = lineBack_ + lineOut_;
+        double target = 1.0;
+        if (lineRemainder > 0.0) {
+            const auto n = static_cast<double>(kRemainderLines);
+            // Lines are spread evenly: a quarter of the variance of independent ones, found on rooms.
+            const double lineVariance = 0.25 * std::max(lineFront_ * lineRemainder, 1.0 / n) / n;
+            const double pairVariance = variance_ + kQuadratureError * kQuadratureError;
+            target = std::min(1.0, (sum_ * lineVariance + lineFront_ * pairVariance) / (lineVariance + pairVariance));
+        }
+        if (!(sum_ > 0.0)) target = 0.0;
+        // The correction goes where the error is: into the pairs by their variances, and evenly into what the rules leave.
+        const double uneven = variance_ / (variance_ + kQuadratureError * kQuadratureError);
+        const double perVariance = variance_ > 0.0 ? uneven * (target - sum_) / variance_ : 0.0;
+        const auto corrected = [&](const PairSample& pair) {
+            const double factor = pair.factor;
+            const double deviation = 0.5 * factor * (pair.half(0) - pair.half(1));
+            return std::clamp(factor * pair.visibleShare() + perVariance * deviation * deviation, 0.0, factor);
+        };
+        double sum = 0.0;
+        for (const PairSample& pair : pairs_) sum += corrected(pair);
+        const double rescale = sum > 0.0 ? target / sum : 0.0;
+        double total = 0.0;
+        for (const PairSample& pair : pairs_) {
+            const double value = rescale * corrected(pair);
+            if (!(value > 0.0)) continue;
+            accumulator.add(pair.patch, value);
+            total += value;
+        }
+        const double remainder = std::max(0.0, 1.0 - total);
+        if (lineRemainder > 0.0) {
+            if (lineBack_ > 0.0) accumulator.add(accumulator.back(), remainder * lineBack_ / lineRemainder);
+            if (lineOut_ > 0.0) accumulator.add(accumulator.out(), remainder * lineOut_ / lineRemainder);
+        } else if (!(total > 0.0)) {
+            accumulator.add(accumulator.back(), remainder);
+        }
+        accumulator.setError(error_ + (sum > 0.0 ? std::abs(rescale - 1.0) : 0.0));
+    }
+
+    std::array<std::uint32_t, 4> shiftOf(std::uint32_t patch, std::uint32_t phase) const {
+        return philox({index_, patch, phase, patch_ == kNone ? 0x50545649U : 0x56495349U}, method_.options_.seed);
+    }
+
+    const VisibilitySampling& method_;
+    const PatchBlocks::Viewer& viewer_;
+    const PatchShape& shape_;
+    std::uint32_t index_; ///< of the random numbers
+    std::uint32_t patch_; ///< kNone: a point
+    ConvexPolygon polygon_;
+    Plane plane_;
+    double area_ = 0.0; ///< m², holes included
+    std::vector<PairSample>& pairs_;
+    double lineFront_ = 0.0, lineBack_ = 0.0, lineOut_ = 0.0; ///< shares of the lines
+    double sum_ = 0.0, variance_ = 0.0, error_ = 0.0;
+};
+
+VisibilitySampling::VisibilitySampling(const PatchMesh& mesh, const RayCaster& rays,
+                                       const VisibilitySamplingOptions& options)
+    : mesh_(mesh),
+      rays_(rays),
+      options_(options),
+      tolerance_(2.0F * weldTolerance(rays.scene())),
+      lines_(mesh, rays, {.lines = kRemainderLines, .seed = options.seed}),
+      blocks_(mesh) {
+    if (!(options.error >= 1e-5 && options.error <= 0.5))
+        throw UsageError(fmt::format("form-factor error: found {}, allowed are 1e-5 to 0.5", options.error));
+    shapes_.reserve(mesh.size());
+    for (std::size_t patch = 0; patch < mesh.size(); ++patch) shapes_.emplace_back(rays, mesh, patch);
+}
+
+std::uint64_t VisibilitySampling::raysPerRow() const {
+    const std::uint64_t rows = rowsDone_;
+    return rows > 0 ? raysTraced_ / rows : mesh_.size() + kRemainderLines;
+}
+
+void VisibilitySampling::row(std::uint32_t patch, RowAccumulator& accumulator) const {
+    thread_local std::vector<PairSample> pairs; // keeps its memory from row to row
+    Row(*this, PatchBlocks::Viewer(mesh_, patch), shapes_[patch], patch, patch, pairs)
+        .run(lines_.lines(patch), accumulator);
+}
+
+void VisibilitySampling::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                                  RowAccumulator& accumulator) const {
+    thread_local std::vector<PairSample> pairs;
+    Row(*this, PatchBlocks::Viewer(origin, normal), PatchShape(origin, normal), index, kNone, pairs)
+        .run(lines_.lines(origin, normal, index), accumulator);
+}
+
+} // namespace lambert
