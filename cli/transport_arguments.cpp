@@ -36,6 +36,12 @@ void refuseWithoutMatrix(const TransportArguments& a) {
     if (!a.formFactors.empty()) throw UsageError("--form-factors: is a matrix to be stored, not --storage none");
 }
 
+/// The one asked for; without one, what the options of one say is meant.
+TransportMethod methodOf(const TransportArguments& a) {
+    if (a.method) return methodByName(*a.method).value();
+    return a.resolution || a.hemicubes || a.rotation ? TransportMethod::Hemicube : TransportMethod::Auto;
+}
+
 void refuseBesideFile(const TransportArguments& a) {
     if (a.method || a.resolution || a.hemicubes || a.rotation || a.lines || a.sampler || a.lineSet || a.formFactorError)
         throw UsageError("--form-factors: the file holds what was computed; leave out --method and its options");
@@ -53,7 +59,7 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
     };
     addChoice("--method", a.method,
-              fmt::format("How form factors are computed, or light without them: {} [auto]", fmt::join(methods, ", ")),
+              fmt::format("How form factors are computed, or light without them: {} [auto; hemicube with its options]", fmt::join(methods, ", ")),
               "METHOD", methods);
     addNumber(
         "--resolution", a.resolution,
@@ -112,7 +118,7 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     MatrixSource source;
     TransportOptions& options = source.transport;
     const Quality& quality = qualityOf(a.quality);
-    options.method = methodByName(a.method.value_or("auto")).value();
+    options.method = methodOf(a);
     options.resolution = a.resolution;
     options.perPatch = a.hemicubes.value_or(1);
     options.randomRotation = a.rotation.value_or("random") == "random";

@@ -38,8 +38,10 @@ const MethodTraits& traitsOf(TransportMethod method) {
     return *std::find_if(kMethods.begin(), kMethods.end(), [&](const MethodTraits& t) { return t.method == method; });
 }
 
-constexpr double kBytesPerRow = 96.0; ///< beside its factors, with the allocator's
-constexpr double kPilotRays = 4e7;    ///< most of the rows that are computed to learn their length
+constexpr double kBytesPerRow = 96.0;   ///< beside its factors, with the allocator's
+constexpr double kPixelsPerRay = 0.125; ///< rays between pairs in the time of as many of a hemicube's
+constexpr double kOverBudget = 2.0;     ///< rows of auto may take so many times the rays
+constexpr double kPilotRays = 4e7;      ///< most of the rows that are computed to learn their length
 
 /// The efforts to choose from, largest first: resolutions or lines.
 std::vector<std::uint32_t> effortLadder(const TransportOptions& o, std::size_t patches) {
@@ -201,10 +203,16 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
         TransportPlan plan = withEffort(options, effort);
         if (options.method == TransportMethod::Auto)
             plan.options.mostRaysPerRow =
-                static_cast<std::uint32_t>(std::clamp(options.mostRays / patches, 4096.0, 16777216.0));
+                static_cast<std::uint32_t>(std::clamp(options.mostRays * kPixelsPerRay / patches, 4096.0, 16777216.0));
         const auto method = hasRows(options.method) ? makeMethod(plan, mesh, rays) : nullptr;
         if (options.method == TransportMethod::Auto) pilotEntriesPerRow(*method, progress); // rows differ
         plan.rays = method ? method->raysPerRow() * mesh.size() : *plan.options.lines;
+        if (options.method == TransportMethod::Auto &&
+            static_cast<double>(plan.rays) > kOverBudget * kPixelsPerRay * options.mostRays) {
+            TransportOptions lines = options; // pairs grow with the square of the patches
+            lines.method = TransportMethod::LocalLines;
+            return planTransport(lines, mesh, rays, progress);
+        }
         const bool last = effort == ladder.back();
         if (!last && static_cast<double>(plan.rays) > options.mostRays) continue;
         if (!options.stored) return plan;

@@ -69,7 +69,8 @@ struct TransportPlan {
 /// Throws UsageError for what can be known to be wrong without a mesh.
 void checkTransport(const TransportOptions& options);
 
-/// Fills in what is not given: the largest effort within the three bounds, and the storage. Computes some rows where a
+/// Fills in what is not given: the largest effort within the three bounds, and the storage; where rays between all pairs
+/// would be too many for `auto`, its place is taken by local lines. Computes some rows where a
 /// dense matrix would not fit. Throws UsageError, SystemError if the matrix would not fit memoryLimit, Cancelled.
 TransportPlan planTransport(const TransportOptions& options, const PatchMesh& mesh, const RayCaster& rays,
                             Progress& progress);

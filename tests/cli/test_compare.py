@@ -12,8 +12,8 @@ import xml.etree.ElementTree
 from html_page import Page
 from lambert_cli import DATA, INPUT, INTERRUPTED, PROGRAM, SYSTEM, USAGE, ProgramTest, png_size, read_json, run
 
-METHODS = ("hemicube", "hemisphere", "local-lines", "global-lines", "closed-form")
-EFFORTS = ("--efforts", "hemicube=16,32", "--efforts", "hemisphere=16,32", "--efforts", "local-lines=64,256",
+METHODS = ("auto", "hemicube", "hemisphere", "local-lines", "global-lines", "closed-form")
+EFFORTS = ("--efforts", "auto=0.2,0.05", "--efforts", "hemicube=16,32", "--efforts", "hemisphere=16,32", "--efforts", "local-lines=64,256",
            "--efforts", "global-lines=4096,16384", "--efforts", "closed-form=0.1,0.01")
 QUICK = ("--patches", "60", "--seeds", "2", "--size", "64x64", *EFFORTS)
 COSTS = {"cpu_seconds", "wall_seconds"}
@@ -147,7 +147,7 @@ class WhatIsWrong(CompareTest):
         out = ("-o", self.folder / "out")
         box = DATA / "cornell_box.obj"
         self.refuse(USAGE, "output.*required", box)
-        self.refuse(USAGE, "no method \"cube\": there are hemicube", box, *out, "--methods", "hemicube,cube")
+        self.refuse(USAGE, "no method \"cube\": there are auto, hemicube", box, *out, "--methods", "hemicube,cube")
         self.refuse(USAGE, "named twice", box, *out, "--methods", "hemicube,hemicube")
         self.refuse(USAGE, "METHOD=EFFORT", box, *out, "--efforts", "16")
         self.refuse(USAGE, "found \"17\", allowed is 4 to 4096 in steps of 2", box, *out, "--efforts", "hemicube=17")
