@@ -217,10 +217,14 @@ void reportGroups(Run& run, const SceneMatrix& obtained, const PatchGroups& grou
 }
 
 std::string summaryOf(const MatrixQuality& q, std::size_t patches) {
-    return fmt::format("{} patches, {} factors, {:.4g} MiB; row sums off by {:.2g} RMS, {:.2g} at most; reciprocity "
+    return fmt::format("{} patches, {} factors, {:.4g} MiB; {}row sums off by {:.2g} RMS, {:.2g} at most; reciprocity "
                        "error {:.2g}{}\n",
-                       patches, q.entries, static_cast<double>(q.bytes) / 1048576.0, q.closureRms, q.closureWorst,
-                       q.reciprocityRms, q.comparedRows < patches ? fmt::format(" (of {} rows)", q.comparedRows) : "");
+                       patches, q.entries, static_cast<double>(q.bytes) / 1048576.0,
+                       q.largestError > 0.0 ? fmt::format("rows known to {:.2g} in the mean, {:.2g} at worst; ",
+                                                          q.meanError, q.largestError)
+                                            : std::string(),
+                       q.closureRms, q.closureWorst, q.reciprocityRms,
+                       q.comparedRows < patches ? fmt::format(" (of {} rows)", q.comparedRows) : "");
 }
 
 void computePatches(Run& run) {

@@ -184,14 +184,16 @@ Json groupJson(const GroupReport& r) {
 }
 
 Json qualityJson(const MatrixQuality& q) {
-    return {{"entries", q.entries},
-            {"bytes", q.bytes},
-            {"row_sums", {{"rms_error", q.closureRms}, {"worst_error", q.closureWorst}, {"worst_row", q.worstRow}}},
-            {"reciprocity",
-             {{"rms_error", q.reciprocityRms}, {"worst_error", q.reciprocityWorst}, {"compared_rows", q.comparedRows}}},
-            {"back", q.back},
-            {"out", q.out},
-            {"covered_area", q.coveredArea}};
+    return {
+        {"entries", q.entries},
+        {"bytes", q.bytes},
+        {"row_sums", {{"rms_error", q.closureRms}, {"worst_error", q.closureWorst}, {"worst_row", q.worstRow}}},
+        {"reciprocity",
+         {{"rms_error", q.reciprocityRms}, {"worst_error", q.reciprocityWorst}, {"compared_rows", q.comparedRows}}},
+        {"row_error", q.largestError > 0.0 ? Json{{"mean", q.meanError}, {"largest", q.largestError}} : Json(nullptr)},
+        {"back", q.back},
+        {"out", q.out},
+        {"covered_area", q.coveredArea}};
 }
 
 } // namespace lambert

@@ -58,6 +58,11 @@ void assessReciprocity(const FormFactorMatrix& matrix, std::span<const float> ar
 
 MatrixQuality assessMatrix(const FormFactorMatrix& matrix, std::span<const float> area) {
     MatrixQuality quality;
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        const auto error = static_cast<double>(matrix.error(i));
+        quality.meanError += error / static_cast<double>(matrix.size());
+        quality.largestError = std::max(quality.largestError, error);
+    }
     const std::size_t count = matrix.size();
     std::vector<double> sum(count, 0.0);
     parallelFor(count, 64, [&](std::size_t begin, std::size_t end, int) {

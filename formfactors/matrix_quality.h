@@ -22,6 +22,8 @@ struct MatrixQuality {
     double coveredArea = 0.0;     //!< m², of patches with F_i,back above kCovered
     double openBack = 0.0;        //!< area-weighted mean of F_i,back over all other patches
 
+    double meanError = 0.0, largestError = 0.0; //!< of the rows, Σ_j |ΔF_ij| as the method knows it; 0: unknown
+
     std::size_t comparedRows = 0;  //!< for reciprocity: all, or of large matrices some spread over the rows
     double reciprocityRms = 0.0;   //!< of A_i F_ij − A_j F_ji over their pairs, relative to the RMS of the means
     double reciprocityWorst = 0.0; //!< the largest |A_i F_ij − A_j F_ji|, relative to the smaller of both areas
