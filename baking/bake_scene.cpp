@@ -191,7 +191,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
         DirectLight(*result.rays, options.directLight).irradiance(result.mesh, lightsOf(*result.scene), progress));
     result.seconds.directLight = watch.lap();
     std::vector<RgbSum> start;
-    if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh);
+    if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh, result.scene->origin);
     const auto solveBy = options.instantRadiosity               ? solveWithVirtualLights
                          : usesLines(options.solver.method)     ? solveWithLines
                          : options.formFactors.transport.stored ? solveStored

@@ -16,6 +16,7 @@ bool isHole(const BakedMesh& mesh, std::size_t face) { return !mesh.opacity.empt
 BakedMesh withoutHoles(const BakedMesh& mesh) {
     BakedMesh result;
     result.materials = mesh.materials;
+    result.origin = mesh.origin;
     std::vector<std::uint32_t> newIndex(mesh.positions.size(), 0);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         if (isHole(mesh, face)) continue;

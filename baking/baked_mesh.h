@@ -24,6 +24,7 @@ struct BakedMesh {
     std::vector<Material> materials;
     std::vector<bool> emitters; //!< #faces: the patch emits; or empty: none does
     std::vector<float> opacity; //!< #faces, as PatchMesh::opacity; or empty: no holes at all
+    glm::dvec3 origin{0.0};     //!< metres, to which the positions are relative; see Scene::origin
 
     bool isQuad(std::size_t face) const { return faces[face][3] != kNone; }
 };

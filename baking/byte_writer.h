@@ -29,6 +29,14 @@ public:
     }
     /// Negative zero is written as zero, so that equal meshes have equal bytes.
     void put(float value) { put(std::bit_cast<std::uint32_t>(value + 0.0F)); }
+    void put(double value) {
+        const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);
+        put(static_cast<std::uint32_t>(bits));
+        put(static_cast<std::uint32_t>(bits >> 32U));
+    }
+    void put(const glm::dvec3& value) {
+        for (int axis = 0; axis < 3; ++axis) put(value[axis]);
+    }
     void put(const glm::vec3& value) {
         put(value.x);
         put(value.y);

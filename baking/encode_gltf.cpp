@@ -96,7 +96,7 @@ public:
             primitives.push_back(primitive(parts_[material], material));
         }
         places = {};
-        writer_.addScene(std::move(primitives));
+        writer_.addScene(std::move(primitives), mesh_.origin);
         writer_.write(stream, binary, file);
     }
 

@@ -21,11 +21,18 @@ std::string objName(const BakedMesh& mesh, std::uint32_t material) {
     return name;
 }
 
+/// Of a vertex, with as many digits as it takes to read the same number again.
+std::string placeText(const BakedMesh& mesh, std::size_t vertex) {
+    const glm::vec3 p = mesh.positions[vertex] + 0.0F; // no negative zeros
+    if (mesh.origin == glm::dvec3(0.0)) return fmt::format("{} {} {}", p.x, p.y, p.z);
+    const glm::dvec3 place = mesh.origin + glm::dvec3(p);
+    return fmt::format("{} {} {}", place.x, place.y, place.z);
+}
+
 void putVertices(const BakedMesh& mesh, const BakeOutputOptions& options, std::ostream& stream) {
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        const glm::vec3 p = mesh.positions[v] + 0.0F; // no negative zeros
         const Rgb colour = displayColour(shownRadiance(mesh, v, options.quantity), options.exposure);
-        fmt::print(stream, "v {} {} {} {:.5f} {:.5f} {:.5f}\n", p.x, p.y, p.z, srgbEncode(colour.x),
+        fmt::print(stream, "v {} {:.5f} {:.5f} {:.5f}\n", placeText(mesh, v), srgbEncode(colour.x),
                    srgbEncode(colour.y), srgbEncode(colour.z));
     }
     for (const glm::vec3& normal : mesh.normals) {
@@ -42,7 +49,7 @@ void putFaces(const BakedMesh& mesh, std::ostream& stream) {
             current = mesh.faceMaterials[face];
             fmt::print(stream, "usemtl {}\n", objName(mesh, current));
         }
-        line = "f";
+        line.assign(1, 'f');
         for (std::size_t k = 0; k < (mesh.isQuad(face) ? 4U : 3U); ++k) {
             const std::uint64_t index = std::uint64_t{mesh.faces[face][k]} + 1; // OBJ counts from 1
             fmt::format_to(std::back_inserter(line), " {}//{}", index, index);

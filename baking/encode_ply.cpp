@@ -11,6 +11,9 @@ namespace lambert {
 
 namespace {
 
+/// Single precision would lose the places.
+bool isFarAway(const BakedMesh& mesh) { return mesh.origin != glm::dvec3(0.0); }
+
 std::string header(const BakedMesh& mesh, const BakeOutputOptions& options) {
     std::string text;
     auto out = std::back_inserter(text);
@@ -24,7 +27,9 @@ std::string header(const BakedMesh& mesh, const BakeOutputOptions& options) {
                    "element vertex {}\n",
                    options.version, options.quantity == Quantity::Radiosity ? "B" : "E", options.exposure + 0.0F,
                    mesh.positions.size());
-    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) fmt::format_to(out, "property float {}\n", name);
+    for (const char* name : {"x", "y", "z"})
+        fmt::format_to(out, "property {} {}\n", isFarAway(mesh) ? "double" : "float", name);
+    for (const char* name : {"nx", "ny", "nz"}) fmt::format_to(out, "property float {}\n", name);
     for (const char* name : {"red", "green", "blue"}) fmt::format_to(out, "property uchar {}\n", name);
     for (const char channel : {'r', 'g', 'b'}) fmt::format_to(out, "property float radiosity_{}\n", channel);
     if (options.quantity == Quantity::Irradiance)
@@ -42,7 +47,10 @@ void encodePly(const BakedMesh& mesh, const BakeOutputOptions& options, std::ost
     stream << header(mesh, options);
     ByteWriter out(stream);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        out.put(mesh.positions[v]);
+        if (isFarAway(mesh))
+            out.put(mesh.origin + glm::dvec3(mesh.positions[v]));
+        else
+            out.put(mesh.positions[v]);
         out.put(mesh.normals[v]);
         const Rgb colour = displayColour(shownRadiance(mesh, v, options.quantity), options.exposure);
         for (int c = 0; c < 3; ++c) out.put(srgbByte(colour[c]));

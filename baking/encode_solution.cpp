@@ -35,6 +35,8 @@ public:
                         {"patches", mesh.size()},
                         {"front_patches", mesh.frontCount},
                         {"positions", positions}};
+        if (const glm::dvec3& origin = record_.scene.origin; origin != glm::dvec3(0.0))
+            lambert["origin"] = jsonOf(origin);
         addPatches(lambert);
         addLight(lambert);
         addRun(lambert);
@@ -119,7 +121,7 @@ private:
                                   {"indices", addIndices(drawn_[m], GltfWriter::Target::Indices)},
                                   {"material", m}});
         }
-        writer_.addScene(std::move(primitives));
+        writer_.addScene(std::move(primitives), record_.scene.origin);
     }
 
     /// Of each second side, the front patch that it is the back of.

@@ -63,10 +63,12 @@ void GltfWriter::setBounds(std::size_t accessor, const glm::vec3& lower, const g
     document_["accessors"][accessor]["max"] = json(upper);
 }
 
-void GltfWriter::addScene(Json primitives) {
+void GltfWriter::addScene(Json primitives, const glm::dvec3& place) {
     if (primitives.empty()) return;
     document_["meshes"] = Json::array({{{"primitives", std::move(primitives)}}});
-    document_["nodes"] = Json::array({{{"mesh", 0}}});
+    Json node = {{"mesh", 0}};
+    if (place != glm::dvec3(0.0)) node["translation"] = Json::array({place.x, place.y, place.z});
+    document_["nodes"] = Json::array({std::move(node)});
     document_["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
     document_["scene"] = 0;
 }

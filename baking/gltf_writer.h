@@ -34,8 +34,8 @@ public:
     /// Of a positions' accessor, which must have them.
     void setBounds(std::size_t accessor, const glm::vec3& lower, const glm::vec3& upper);
 
-    /// One node with one mesh of these primitives, if there are any.
-    void addScene(Json primitives);
+    /// One node at `place` (metres) with one mesh of these primitives, if there are any.
+    void addScene(Json primitives, const glm::dvec3& place);
 
     /// A GLB container if `binary`, else JSON with the buffer as a data URI (for which it is in memory after all). Throws
     /// SystemError with `file` above 2^32 bytes, and what contents throw.

@@ -78,6 +78,16 @@ private:
     }
     std::int64_t whole(const char* name) const { return whole(member(name), name); }
 
+    /// Of the scene, which only files of scenes far away name.
+    glm::dvec3 origin() const {
+        glm::dvec3 result(0.0);
+        if (!has("origin")) return result;
+        const json& values = member("origin");
+        if (!values.is_array() || values.size() != 3) failAt("origin", oneLine(values.dump(), 60), "3 numbers");
+        for (int c = 0; c < 3; ++c) result[c] = number(values[static_cast<std::size_t>(c)], "origin");
+        return result;
+    }
+
     int index(const json& value, const std::string& place) const {
         const std::int64_t result = whole(value, place);
         return static_cast<int>(std::min<std::int64_t>(result, std::numeric_limits<int>::max()));
@@ -193,6 +203,7 @@ private:
     /// The scene of the fronts' triangles; the mesh learns to which patches they belong.
     Scene sceneOf(PatchMesh& mesh) const {
         Scene scene;
+        scene.origin = origin();
         scene.nodes.emplace_back();
         scene.positions = mesh.positions;
         for (const tinygltf::Material& material : model_.materials)
@@ -279,7 +290,7 @@ private:
 
 StoredSolution readSolution(const std::filesystem::path& path) { return SolutionReader(path).read(); }
 
-std::vector<RgbSum> readStart(const std::filesystem::path& path, const PatchMesh& mesh) {
+std::vector<RgbSum> readStart(const std::filesystem::path& path, const PatchMesh& mesh, const glm::dvec3& origin) {
     StoredSolution stored = readSolution(path);
     const PatchMesh& found = stored.meshed.mesh;
     if (found.size() != mesh.size())
@@ -287,7 +298,8 @@ std::vector<RgbSum> readStart(const std::filesystem::path& path, const PatchMesh
             fmt::format("{}: found {} patches, the scene has {}; mesh options such as --patches must be those it was "
                         "made with",
                         path.string(), found.size(), mesh.size()));
-    if (found.frontCount != mesh.frontCount || found.corners != mesh.corners || found.positions != mesh.positions)
+    if (found.frontCount != mesh.frontCount || found.corners != mesh.corners || found.positions != mesh.positions ||
+        stored.meshed.scene->origin != origin)
         throw InputError(
             fmt::format("{}: found patches that lie elsewhere than the scene's: it is of another scene or was made "
                         "with other mesh options",

@@ -82,6 +82,7 @@ private:
 BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const RadiositySolution& solution,
                              const ReconstructionOptions& options, std::size_t* separatedFaces) {
     BakedMesh baked = makeVertices(mesh, options.creaseAngle, separatedFaces);
+    baked.origin = scene.origin;
     baked.materials = scene.materials;
     baked.faceMaterials = mesh.material;
     baked.opacity = mesh.opacity;

@@ -50,7 +50,7 @@ struct StoredSolution {
 StoredSolution readSolution(const std::filesystem::path& path);
 
 /// The irradiances of a solution file, #patches, as the start of a solver. Throws InputError as readSolution, and unless its
-/// patches are those of `mesh`: reflectances and emission may be others.
-std::vector<RgbSum> readStart(const std::filesystem::path& path, const PatchMesh& mesh);
+/// patches are those of `mesh`, of a scene with this `origin`: reflectances and emission may be others.
+std::vector<RgbSum> readStart(const std::filesystem::path& path, const PatchMesh& mesh, const glm::dvec3& origin);
 
 } // namespace lambert

@@ -22,6 +22,9 @@ struct BakeOutputOptions {
 /// Writes the mesh with its light, whole or not at all, and with the same bytes for the same mesh and options. Faces that are
 /// one hole are left out; those that are partly holes are written whole.
 ///
+/// Vertices of a mesh with an origin come back to the file's place: in glTF by the translation of the node, in PLY as doubles, in
+/// OBJ with all digits that a double needs.
+///
 /// - Glb, Gltf (buffer embedded): one mesh, one primitive per material used, unlit; quads are split. `_RADIOSITY` = B per
 ///   m², linear, unclamped; `_IRRADIANCE` = E if that is the quantity; `COLOR_0` = linear display colour in [0, 1].
 /// - Ply: binary little-endian, quads stay; `red green blue` = sRGB display colour, `radiosity_r …` (and `irradiance_r …`)

@@ -8,6 +8,7 @@
 #include "rendering/image.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -113,8 +114,12 @@ void addCameraArguments(CLI::App& command, PictureArguments& a) {
         ->group("Picture");
 }
 
-glm::vec3 parseVector(const std::string& text, const std::string& option) {
-    glm::vec3 result(0.0F);
+namespace {
+
+/// Three finite numbers, separated by commas. Throws UsageError.
+template <typename Number>
+glm::vec<3, Number> parseNumbers(const std::string& text, const std::string& option) {
+    glm::vec<3, Number> result(0);
     const char* at = text.data();
     const char* const end = text.data() + text.size();
     for (int axis = 0; axis < 3; ++axis) {
@@ -126,6 +131,10 @@ glm::vec3 parseVector(const std::string& text, const std::string& option) {
     }
     return result;
 }
+
+} // namespace
+
+glm::vec3 parseVector(const std::string& text, const std::string& option) { return parseNumbers<float>(text, option); }
 
 MeshOptions meshOptions(const TransportArguments& a) {
     MeshOptions options;
@@ -188,6 +197,15 @@ const Camera& namedCamera(const std::string& name, const Scene& scene) {
                                  names.empty() ? " and no other" : ", but ", fmt::join(names, ", ")));
 }
 
+/// The camera of --eye, whose places are the file's, in a scene with this origin.
+Camera typedCamera(const PictureArguments& a, const glm::dvec3& origin) {
+    const auto place = [&](const std::string& text, const char* option) {
+        return glm::vec3(parseNumbers<double>(text, option) - origin);
+    };
+    return lookAtCamera(place(a.eye, "--eye"), place(a.lookAt, "--look-at"), parseVector(a.up, "--up"),
+                        static_cast<float>(a.fov.value_or(45.0)));
+}
+
 } // namespace
 
 void checkCamera(const PictureArguments& a, const Scene& scene) {
@@ -204,17 +222,19 @@ void checkPicture(const PictureArguments& a) {
     if (a.path.empty()) return;
     imageFormatOf(a.path);
     parseSize(a.size);
-    if (!a.eye.empty())
-        lookAtCamera(parseVector(a.eye, "--eye"), parseVector(a.lookAt, "--look-at"), parseVector(a.up, "--up"),
-                     static_cast<float>(a.fov.value_or(45.0)));
+    if (a.eye.empty()) return;
+    // The scene's origin is not known yet, and far from it single precision might not tell the two places apart.
+    const auto eye = parseNumbers<double>(a.eye, "--eye"), lookAt = parseNumbers<double>(a.lookAt, "--look-at");
+    const double apart = glm::distance(eye, lookAt);
+    const bool farAway = apart > 0.0 && apart < 1e-3 * glm::length(eye);
+    typedCamera(a, farAway ? eye : glm::dvec3(0.0));
 }
 
 Picture picture(const PictureArguments& a, const Scene& scene, const RayCaster& rays) {
     const auto [width, height] = parseSize(a.size);
     Picture result{a.path, width, height, {}, a.samples};
     if (!a.eye.empty()) {
-        result.camera = lookAtCamera(parseVector(a.eye, "--eye"), parseVector(a.lookAt, "--look-at"),
-                                     parseVector(a.up, "--up"), static_cast<float>(a.fov.value_or(45.0)));
+        result.camera = typedCamera(a, scene.origin);
     } else if (!a.camera.empty()) {
         result.camera = namedCamera(a.camera, scene);
     } else if (!scene.cameras.empty()) {

@@ -15,10 +15,10 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json cameraJson(const Picture& picture) {
+Json cameraJson(const Picture& picture, const Scene& scene) {
     const Camera& camera = picture.camera;
     return {{"name", camera.name},
-            {"eye", jsonVector(glm::dvec3(camera.eye))},
+            {"eye", jsonVector(placeInFile(scene, camera.eye))},
             {"direction", jsonVector(glm::dvec3(camera.direction))},
             {"up", jsonVector(glm::dvec3(camera.up))},
             {"vertical_fov_degrees", static_cast<double>(camera.verticalFov) * 180.0 / std::numbers::pi},
@@ -195,7 +195,7 @@ Json bakeReport(const BakeReportInput& in) {
     report["options"] = optionsJson(in);
     report["seed"] = in.run.seed;
     report["version"] = LAMBERT_VERSION;
-    report["camera"] = in.picture ? cameraJson(*in.picture) : Json(nullptr);
+    report["camera"] = in.picture ? cameraJson(*in.picture, *baked.scene) : Json(nullptr);
     report["exposure_ev"] = in.exposure ? Json(*in.exposure) : Json(nullptr);
     report["input"] = inputJson(in);
     report["mesh"] = meshJson(baked);

@@ -124,7 +124,8 @@ void readAndMesh(Run& run) {
 /// Rows of the points. Throws UsageError if the method has none.
 void computePoints(Run& run) {
     Stopwatch watch;
-    const std::vector<ProbePoint> points = readPoints(run.a.points);
+    const std::vector<SensorPoint> sensors = readPoints(run.a.points);
+    const std::vector<ProbePoint> points = pointsInScene(sensors, *run.scene.scene);
     // A few points are no matrix: only the largest effort of the preset bounds them.
     TransportOptions options = run.source.transport;
     options.mostRays = std::numeric_limits<double>::infinity();
@@ -154,7 +155,7 @@ void computePoints(Run& run) {
     run.setComment(plan.effort());
     std::string remainders = "# x,y,z,nx,ny,nz,F_back,F_out\n";
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const auto& [p, n] = points[k];
+        const auto& [p, n] = sensors[k];
         remainders +=
             fmt::format("{},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, n.x, n.y, n.z, matrix.back(k), matrix.out(k));
     }

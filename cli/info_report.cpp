@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -28,6 +29,20 @@ const char* kindName(PunctualLight::Kind kind) {
         return "directional";
     }
     return "";
+}
+
+/// A directional light has none.
+glm::dvec3 placeOf(const Scene& scene, const PunctualLight& light) {
+    return light.kind == PunctualLight::Kind::Directional ? glm::dvec3(0.0) : placeInFile(scene, light.position);
+}
+
+/// A place in the file, in metres, with as many digits as tell places of the scene apart.
+std::string placeText(const Scene& scene, const glm::vec3& place) {
+    const glm::dvec3 p = placeInFile(scene, place);
+    if (scene.origin == glm::dvec3(0.0)) return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z);
+    const double size = std::max(static_cast<double>(boundsOf(scene).diagonal()), 1e-9);
+    const int decimals = std::clamp(4 - static_cast<int>(std::floor(std::log10(size))), 0, 12);
+    return fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", p.x, decimals, p.y, decimals, p.z, decimals);
 }
 
 double degrees(float radians) { return static_cast<double>(radians) * 180.0 / std::numbers::pi; }
@@ -116,8 +131,8 @@ Json infoReport(const InfoReportInput& in) {
     Json report;
     report["scene"] = in.path.string();
     report["version"] = LAMBERT_VERSION;
-    report["bounds"] = {{"lower", jsonVector(glm::dvec3(facts.bounds.lower))},
-                        {"upper", jsonVector(glm::dvec3(facts.bounds.upper))}};
+    report["bounds"] = {{"lower", jsonVector(placeInFile(scene, facts.bounds.lower))},
+                        {"upper", jsonVector(placeInFile(scene, facts.bounds.upper))}};
     report["unit"] = in.read.report.overrides.metresPerUnit;
     report["unit_guesses"] = Json::array();
     for (const LengthUnit& unit : facts.units) report["unit_guesses"].push_back(unit.metres);
@@ -144,12 +159,12 @@ Json infoReport(const InfoReportInput& in) {
         report["lights"].push_back({{"name", light.name},
                                     {"kind", kindName(light.kind)},
                                     {"intensity", jsonVector(glm::dvec3(light.intensity))},
-                                    {"position", jsonVector(glm::dvec3(light.position))},
+                                    {"position", jsonVector(placeOf(scene, light))},
                                     {"direction", jsonVector(glm::dvec3(light.direction))}});
     report["cameras"] = Json::array();
     for (const Camera& camera : scene.cameras)
         report["cameras"].push_back({{"name", camera.name},
-                                     {"eye", jsonVector(glm::dvec3(camera.eye))},
+                                     {"eye", jsonVector(placeInFile(scene, camera.eye))},
                                      {"direction", jsonVector(glm::dvec3(camera.direction))}});
     report["worth_a_look"] = Json::array();
     for (const Finding& finding : in.findings)
@@ -177,8 +192,8 @@ void printSummary(const InfoReportInput& in) {
     const glm::vec3 size = facts.bounds.size();
     const double unit = report.overrides.metresPerUnit;
     fmt::print("scene       {}\n", oneLine(in.path.string()));
-    fmt::print("size        {:.4g} × {:.4g} × {:.4g} m, from ({:.4g}, {:.4g}, {:.4g}){}\n", size.x, size.y, size.z,
-               facts.bounds.lower.x, facts.bounds.lower.y, facts.bounds.lower.z,
+    fmt::print("size        {:.4g} × {:.4g} × {:.4g} m, from {}{}\n", size.x, size.y, size.z,
+               placeText(in.read.scene, facts.bounds.lower),
                unit == 1.0 ? "" : fmt::format("; {:g} m per unit of the file", unit));
     fmt::print("polygons    {} triangles, {} quads, {:.5g} m²; {} in the file\n", facts.triangles, facts.quads,
                facts.area, report.inputPolygons);
@@ -206,8 +221,8 @@ void printLightsAndCameras(const Scene& scene) {
         fmt::print("light       {}: {}, {} {}\n", oneLine(light.name), kindName(light.kind), rgb(light.intensity),
                    light.kind == PunctualLight::Kind::Directional ? "lx" : "cd");
     for (const Camera& camera : scene.cameras)
-        fmt::print("camera      {}: eye ({:.4g}, {:.4g}, {:.4g}), {:.1f}° vertically\n", oneLine(camera.name),
-                   camera.eye.x, camera.eye.y, camera.eye.z, degrees(camera.verticalFov));
+        fmt::print("camera      {}: eye {}, {:.1f}° vertically\n", oneLine(camera.name), placeText(scene, camera.eye),
+                   degrees(camera.verticalFov));
 }
 
 /// What a material has beside its two colours.

@@ -18,11 +18,11 @@ namespace lambert {
 namespace {
 
 /// The first six numbers of a line, separated by commas and blanks; fewer if something else comes.
-std::vector<float> leadingNumbers(std::string_view line) {
-    std::vector<float> numbers;
+std::vector<double> leadingNumbers(std::string_view line) {
+    std::vector<double> numbers;
     const auto skip = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size())); };
     for (skip(); numbers.size() < 6; skip()) {
-        float value = 0.0F;
+        double value = 0.0;
         if (line.starts_with('+')) line.remove_prefix(1);
         const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
         if (error != std::errc()) break;
@@ -39,27 +39,27 @@ std::vector<float> leadingNumbers(std::string_view line) {
     return numbers;
 }
 
-ProbePoint toPoint(const std::vector<float>& n, const std::string& place) {
-    const ProbePoint point{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+SensorPoint toPoint(const std::vector<double>& n, const std::string& place) {
+    const SensorPoint point{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     const float length = glm::length(point.normal);
-    if (!std::isfinite(point.position.x + point.position.y + point.position.z) || !std::isfinite(length) ||
-        length == 0.0F)
+    const glm::vec3 single(point.place);
+    if (!std::isfinite(single.x + single.y + single.z) || !std::isfinite(length) || length == 0.0F)
         throw InputError(fmt::format("{}: found a point that is not finite or a normal without length", place));
     return point;
 }
 
 } // namespace
 
-std::vector<ProbePoint> readPoints(const std::filesystem::path& path) {
+std::vector<SensorPoint> readPoints(const std::filesystem::path& path) {
     std::ifstream file(path);
     if (!file || std::filesystem::is_directory(path))
         throw InputError(fmt::format("{}: cannot be read", path.string()));
-    std::vector<ProbePoint> points;
+    std::vector<SensorPoint> points;
     std::string line;
     bool headerAllowed = true;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
         if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
-        const std::vector<float> numbers = leadingNumbers(line);
+        const std::vector<double> numbers = leadingNumbers(line);
         const std::string place = fmt::format("{}:{}", path.string(), number);
         if (numbers.size() == 6)
             points.push_back(toPoint(numbers, place));
@@ -70,6 +70,12 @@ std::vector<ProbePoint> readPoints(const std::filesystem::path& path) {
     }
     if (points.empty()) throw InputError(fmt::format("{}: holds no points", path.string()));
     return points;
+}
+
+std::vector<ProbePoint> pointsInScene(const std::vector<SensorPoint>& points, const Scene& scene) {
+    std::vector<ProbePoint> result;
+    for (const SensorPoint& point : points) result.push_back({placeInScene(scene, point.place), point.normal});
+    return result;
 }
 
 } // namespace lambert

@@ -30,7 +30,7 @@ struct ProbeArguments {
     std::filesystem::path points, output;
 };
 
-std::string table(const std::vector<ProbePoint>& points, const std::vector<ProbeReading>& readings) {
+std::string table(const std::vector<SensorPoint>& points, const std::vector<ProbeReading>& readings) {
     std::string text = "# x,y,z,nx,ny,nz,E_r,E_g,E_b,stderr_r,stderr_g,stderr_b\n";
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto& [p, n] = points[i];
@@ -53,14 +53,14 @@ ExitCode probe(const ProbeArguments& a) {
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
     const Stopwatch total;
-    const std::vector<ProbePoint> points = readPoints(a.points);
+    const std::vector<SensorPoint> points = readPoints(a.points);
     ReadResult read = readScene(a.scene, &progress);
     addDaylight(read.scene, a.transport.light);
     const double readSeconds = total.seconds();
     logReport(a.run, read.report);
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
-    const std::vector<ProbeReading> readings = probeIrradiance(baked, points);
+    const std::vector<ProbeReading> readings = probeIrradiance(baked, pointsInScene(points, *baked.scene));
     const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
     if (inSpace > 0)
         logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));

@@ -4,6 +4,7 @@
 #include "cli/arguments.h"
 
 #include "core/error.h"
+#include "scene/distant_origin.h"
 #include "scene/overrides_file.h"
 
 #include <fmt/format.h>
@@ -85,6 +86,12 @@ AppliedOverrides gatherOverrides(const SceneArguments& a) {
     return result;
 }
 
+/// How much farther from the file's origin that of the scene should be, as its polygons are now.
+glm::dvec3 neededShift(const Scene& scene) {
+    const Bounds bounds = boundsOf(scene);
+    return distantOrigin({glm::dvec3(bounds.lower), glm::dvec3(bounds.upper)});
+}
+
 } // namespace
 
 void addSceneArguments(CLI::App& command, SceneArguments& a) {
@@ -145,14 +152,21 @@ ReadResult readScene(const SceneArguments& a, Progress* progress) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
     AppliedOverrides overrides = gatherOverrides(a);
-    ReadResult result = readScene(a.path, {.metresPerUnit = overrides.metresPerUnit,
-                                           .twoSided = overrides.twoSided,
-                                           .strict = a.strict,
-                                           .allowOutsideFiles = a.allowOutsideFiles,
-                                           .progress = progress,
-                                           .curveSegments = a.curveSegments,
-                                           .mostPolygons = a.mostPolygons});
+    ReadOptions options{.metresPerUnit = overrides.metresPerUnit,
+                        .twoSided = overrides.twoSided,
+                        .strict = a.strict,
+                        .allowOutsideFiles = a.allowOutsideFiles,
+                        .progress = progress,
+                        .curveSegments = a.curveSegments,
+                        .mostPolygons = a.mostPolygons};
+    ReadResult result = readScene(a.path, options);
     applyOverrides(result.scene, overrides.changes);
+    // What is excluded may be all that kept the scene near the file's origin.
+    if (const glm::dvec3 shift = neededShift(result.scene); shift != glm::dvec3(0.0)) {
+        options.origin = result.scene.origin + shift;
+        result = readScene(a.path, options);
+        applyOverrides(result.scene, overrides.changes);
+    }
     result.report.overrides = std::move(overrides);
     return result;
 }

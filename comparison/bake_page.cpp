@@ -106,7 +106,10 @@ private:
         options.samplesPerAxis = in_.size.samplesPerAxis;
         options.quantity = in_.quantity;
         options.toneMapExposure = *exposure;
-        const Image image = renderBaked(solution.meshed.mesh, baked, rays, in_.camera, options, progress_);
+        Camera camera = in_.camera;
+        if (in_.a.meshed.scene->origin != solution.meshed.scene->origin)
+            camera.eye = placeInScene(*solution.meshed.scene, placeInFile(*in_.a.meshed.scene, camera.eye));
+        const Image image = renderBaked(solution.meshed.mesh, baked, rays, camera, options, progress_);
         return {title, files_.picture(name, image, title), ""};
     }
 

@@ -20,8 +20,9 @@ const std::vector<RgbSum>& lightOf(const StoredSolution& solution, Quantity quan
     return quantity == Quantity::Radiosity ? solution.solution.radiosity : solution.solution.irradiance;
 }
 
-bool samePatches(const PatchMesh& a, const PatchMesh& b) {
-    return a.frontCount == b.frontCount && a.corners == b.corners && a.positions == b.positions;
+bool samePatches(const MeshedScene& a, const MeshedScene& b) {
+    return a.scene->origin == b.scene->origin && a.mesh.frontCount == b.mesh.frontCount &&
+           a.mesh.corners == b.mesh.corners && a.mesh.positions == b.mesh.positions;
 }
 
 /// Of what a line to the centre of a patch crosses the patch on the same side; kNone if there is none. Where surfaces touch, that
@@ -37,8 +38,10 @@ std::uint32_t patchAmong(std::span<const Crossing> crossings, const PatchMesh& m
     return found;
 }
 
-/// The patch of `other` at the centre of each patch of `mesh` and on the same side; kNone where there is none.
-std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedScene& other) {
+/// The patch of `other` at the centre of each patch of `reference` and on the same side; kNone where there is none.
+std::vector<std::uint32_t> patchesAtCentres(const MeshedScene& reference, const MeshedScene& other) {
+    const PatchMesh& mesh = reference.mesh;
+    const glm::vec3 shift = placeInScene(*other.scene, reference.scene->origin);
     std::vector<std::uint32_t> result(mesh.size(), kNone);
     if (other.scene->polygons.empty()) return result;
     const RayCaster rays(*other.scene);
@@ -51,7 +54,7 @@ std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedS
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const std::size_t i = first + std::min(lane, lanes - 1);
             const float above = 4.0F * rays.originOffset(std::sqrt(mesh.area[i])); // centres are off by rounding
-            const glm::vec3 origin = mesh.centroid[i] + above * mesh.normal[i];
+            const glm::vec3 origin = mesh.centroid[i] + shift + above * mesh.normal[i];
             const glm::vec3 direction = -2.0F * above * mesh.normal[i];
             packet.originX[lane] = origin.x;
             packet.originY[lane] = origin.y;
@@ -74,9 +77,9 @@ std::vector<std::uint32_t> patchesAtCentres(const PatchMesh& mesh, const MeshedS
 BakeComparison compareBakes(const StoredSolution& reference, const StoredSolution& other, Quantity quantity) {
     const PatchMesh& mesh = reference.meshed.mesh;
     BakeComparison result;
-    result.samePatches = samePatches(mesh, other.meshed.mesh);
+    result.samePatches = samePatches(reference.meshed, other.meshed);
     std::vector<std::uint32_t> patchOf;
-    if (!result.samePatches) patchOf = patchesAtCentres(mesh, other.meshed);
+    if (!result.samePatches) patchOf = patchesAtCentres(reference.meshed, other.meshed);
 
     std::vector<double> area, mean[2], channel[2][3];
     double all = 0.0, unmatched = 0.0;

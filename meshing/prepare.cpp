@@ -166,6 +166,7 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     prepared.textures = scene.textures;
     prepared.lights = scene.lights;
     prepared.environment = scene.environment;
+    prepared.origin = scene.origin;
     prepared.polygons.reserve(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
         auto welded = weldPolygon(polygon, representative, scene, 2.0F * tolerance);

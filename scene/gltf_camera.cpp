@@ -36,7 +36,7 @@ void addGltfCamera(const std::string& file, const tinygltf::Model& model, const 
         builder.warn(fmt::format("the camera {} was ignored: its transform is singular", inQuotes(camera.name)));
         return;
     }
-    camera.eye = glm::vec3(eye);
+    camera.eye = builder.local(eye);
     camera.direction = glm::vec3(direction);
     camera.up = glm::vec3(up);
     camera.verticalFov = static_cast<float>(fov);

@@ -62,7 +62,7 @@ void addGltfLight(const std::string& file, const tinygltf::Model& model, const G
     if (light.name.empty()) light.name = source.name;
     if (light.name.empty()) light.name = fmt::format("light_{}", index);
 
-    light.position = glm::vec3(node.toWorld[3]);
+    light.position = builder.local(glm::dvec3(node.toWorld[3]));
     light.direction = glm::vec3(glm::normalize(-glm::dvec3(node.toWorld[2])));
     const bool hasPosition = light.kind != PunctualLight::Kind::Directional;
     const bool hasDirection = light.kind != PunctualLight::Kind::Point;

@@ -1,6 +1,7 @@
 #include "scene/gltf_mesh.h"
 
 #include "scene/gltf_document.h"
+#include "scene/gltf_nodes.h"
 
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
@@ -186,9 +187,11 @@ std::size_t GltfMeshes::vertexIndex(const Source& source, const tinygltf::Primit
 
 std::uint32_t GltfMeshes::sceneVertex(const GltfAccessor& positions, std::size_t vertex, const glm::dmat4& toWorld) {
     Known& known = known_[vertex];
-    if (known.run != run_)
-        known = {run_,
-                 builder_.addPosition(glm::dvec3(toWorld * glm::dvec4(glm::vec3(positions.element(vertex)), 1.0)))};
+    if (known.run != run_) {
+        const glm::vec3 stored(positions.element(vertex));
+        builder_.noteSinglePrecision(stored, largestScale(toWorld));
+        known = {run_, builder_.addPosition(glm::dvec3(toWorld * glm::dvec4(stored, 1.0)))};
+    }
     return known.vertex;
 }
 

@@ -59,6 +59,12 @@ std::vector<Visit> rootVisits(const std::string& file, const tinygltf::Model& mo
 
 } // namespace
 
+double largestScale(const glm::dmat4& transform) {
+    double longest = 0.0;
+    for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, glm::length(glm::dvec3(transform[axis])));
+    return longest;
+}
+
 std::vector<GltfNode> collectGltfNodes(const std::string& file, const tinygltf::Model& model) {
     std::vector<GltfNode> nodes;
     std::vector<bool> reached(model.nodes.size(), false);

@@ -22,4 +22,7 @@ struct GltfNode {
 /// out of range, if a node is reached twice (a cycle, or two parents), or if a rotation is 0.
 std::vector<GltfNode> collectGltfNodes(const std::string& file, const tinygltf::Model& model);
 
+/// How much longer a transform makes the axis that it stretches most.
+double largestScale(const glm::dmat4& transform);
+
 } // namespace lambert

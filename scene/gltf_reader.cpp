@@ -132,8 +132,11 @@ private:
         skinned_ |= source.skin >= 0;
 
         const GltfInstances instances(file_, model_, node.index);
-        for (std::size_t k = 0; k < instances.count(); ++k)
-            meshes_.add(source.mesh, node.toWorld * instances.toNode(k), sceneNode);
+        for (std::size_t k = 0; k < instances.count(); ++k) {
+            const glm::dmat4 toNode = instances.toNode(k);
+            builder_.noteSinglePrecision(glm::vec3(toNode[3]), largestScale(node.toWorld));
+            meshes_.add(source.mesh, node.toWorld * toNode, sceneNode);
+        }
     }
 
     std::string file_;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -87,11 +89,14 @@ private:
         if (!x || !y || !z) failAt(file_, element.line, "element vertex", "its properties x, y and z");
         const auto u = element.findNumber({"s", "u", "texture_u"}), v = element.findNumber({"t", "v", "texture_v"});
         const bool hasCoordinates = !header_.textureFiles.empty() && u && v;
+        const bool isSingle = std::ranges::any_of(
+            std::array{*x, *y, *z}, [&](std::size_t k) { return element.properties[k].type == PlyType::Float32; });
         PlyTints tints(element);
         if (tints.present() && element.findNumber({"radiosity_r"}))
             builder_.warn("holds baked light: its colours are read as reflectance, and no emission");
         forRecords(records, element, [&] {
             const glm::dvec3 position(records.number(*x), records.number(*y), records.number(*z));
+            if (isSingle) builder_.noteSinglePrecision(glm::vec3(position), options_.metresPerUnit);
             builder_.addPosition(position * options_.metresPerUnit);
             if (tints.present()) vertices_.tints.push_back(tints.read(records));
             if (hasCoordinates)

@@ -98,7 +98,8 @@ struct PunctualLight {
 
 class Environment;
 
-/// Source polygons in world space, in metres, with their materials, lights and cameras. Immutable once read.
+/// Source polygons in world space, in metres, with their materials, lights and cameras. Immutable once read. All places (of
+/// vertices, lights and cameras) are relative to `origin`.
 struct Scene {
     std::vector<glm::vec3> positions;
     std::vector<Polygon> polygons;
@@ -109,7 +110,16 @@ struct Scene {
     std::vector<std::shared_ptr<const Texture>> textures;
     std::vector<PunctualLight> lights;
     std::shared_ptr<const Environment> environment{}; //!< what the scene lies in; none: darkness
+    /// Metres. What was subtracted from the file's places, so that single precision holds those of a scene that lies far
+    /// away: see distantOrigin. 0 0 0 for all others.
+    glm::dvec3 origin{0.0};
 };
+
+/// Where the file has a place of the scene, in metres.
+inline glm::dvec3 placeInFile(const Scene& scene, const glm::vec3& place) { return scene.origin + glm::dvec3(place); }
+
+/// The place in the scene of one in the file, in metres.
+inline glm::vec3 placeInScene(const Scene& scene, const glm::dvec3& place) { return glm::vec3(place - scene.origin); }
 
 /// The corner `k` of a polygon.
 inline const glm::vec3& corner(const Scene& scene, const Polygon& polygon, int k) {

@@ -4,6 +4,7 @@
 #include "core/triangulation.h"
 #include "scene/input_file.h"
 #include "scene/merge_warnings.h"
+#include "scene/polygon_shape.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -24,9 +25,9 @@ constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finit
 constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
 constexpr std::size_t kMostFanCorners = 256;
 constexpr float kSmallestScene =
-    1e-10F; // metres: each of 10^8 patches has an area in single precision, with much to spare
-constexpr double kMaxOffPlane = 1e-5;   // of a quad's longest diagonal
-constexpr double kMinCornerSine = 1e-5; // flatter corners would leave a quad's half without area
+    1e-10F;                      // metres: each of 10^8 patches has an area in single precision, with much to spare
+constexpr double kCoarse = 1e-5; // of the diagonal: coarser coordinates open gaps that light finds
+constexpr double kMaxOffPlane = 1e-5; // of a quad's longest diagonal
 
 bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -46,65 +47,6 @@ bool hasArea(const Scene& scene, const Polygon& polygon) {
     return std::isnormal(area) && std::isfinite(area * area);
 }
 
-/// Newell's normal: twice the area vector, also of polygons that are concave or not quite planar.
-glm::dvec3 newellNormal(std::span<const glm::dvec3> points) {
-    glm::dvec3 sum(0.0);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        sum += glm::cross(points[i] - points[0], points[(i + 1) % points.size()] - points[0]);
-    return sum;
-}
-
-/// Whether every corner turns left, seen against `normal`, by more than rounding.
-bool isConvex(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::dvec3 in = points[(i + 1) % points.size()] - points[i];
-        const glm::dvec3 out = points[(i + 2) % points.size()] - points[(i + 1) % points.size()];
-        const double turn = glm::dot(glm::cross(in, out), normal);
-        if (!(turn > kMinCornerSine * glm::length(in) * glm::length(out))) return false;
-    }
-    return true;
-}
-
-/// Distance of the farthest vertex from the plane through the centroid.
-double offPlane(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
-    glm::dvec3 centroid(0.0);
-    for (const glm::dvec3& p : points) centroid += p;
-    centroid /= static_cast<double>(points.size());
-    double farthest = 0.0;
-    for (const glm::dvec3& p : points) farthest = std::max(farthest, std::abs(glm::dot(p - centroid, normal)));
-    return farthest;
-}
-
-/// The polygon in its own plane, counter-clockwise.
-std::vector<glm::dvec2> projected(std::span<const glm::dvec3> points, const glm::dvec3& normal) {
-    const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(helper, normal));
-    const glm::dvec3 v = glm::cross(normal, u);
-    std::vector<glm::dvec2> result;
-    for (const glm::dvec3& p : points) result.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
-    return result;
-}
-
-double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-/// Of the first loop less all others, whichever way they turn.
-double areaWithHoles(std::span<const glm::dvec2> points, std::span<const std::size_t> loopSizes) {
-    double area = 0.0;
-    for (std::size_t loop = 0, begin = 0; loop < loopSizes.size(); begin += loopSizes[loop++]) {
-        const auto corners = points.subspan(begin, loopSizes[loop]);
-        double twice = 0.0;
-        for (std::size_t k = 0; k < corners.size(); ++k) twice += cross(corners[k], corners[(k + 1) % corners.size()]);
-        area += (loop == 0 ? 0.5 : -0.5) * std::abs(twice);
-    }
-    return area;
-}
-
-double areaOf(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const glm::dvec2> points) {
-    double twice = 0.0;
-    for (const auto& [a, b, c] : triangles) twice += cross(points[b] - points[a], points[c] - points[a]);
-    return 0.5 * twice;
-}
-
 } // namespace
 
 Rgb notAboveLargest(const Rgb& factor) {
@@ -116,6 +58,7 @@ SceneBuilder::SceneBuilder(std::string file, const ReadOptions& options) : file_
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file_, error);
     if (!error) countBytes(size);
+    result_.scene.origin = options_.origin.value_or(glm::dvec3(0.0));
 }
 
 std::uintmax_t SceneBuilder::mostPolygons() const {
@@ -138,7 +81,8 @@ std::uint32_t SceneBuilder::addPosition(const glm::dvec3& metres) {
     if (positions.size() >= kNone)
         throw InputError(fmt::format("{}: found more vertices than allowed ({})", file_, kNone));
     requireFewerThan(4 * mostPolygons(), positions.size(), "vertices");
-    positions.emplace_back(static_cast<float>(metres.x), static_cast<float>(metres.y), static_cast<float>(metres.z));
+    positions.push_back(local(metres));
+    if (!options_.origin) rounding_.emplace_back(metres - glm::dvec3(positions.back()));
     return static_cast<std::uint32_t>(positions.size() - 1);
 }
 
@@ -244,6 +188,7 @@ void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint
         ++report.nonFinitePolygons;
         return;
     }
+    growBounds(vertices);
 
     const auto coincide = [&](std::uint32_t a, std::uint32_t b) { return positions[a] == positions[b]; };
     corners_.clear();
@@ -277,6 +222,13 @@ bool SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c
     triangle.surface = cornerSurface(a, b, c, kNone);
     append(triangle);
     return true;
+}
+
+void SceneBuilder::growBounds(std::span<const std::uint32_t> vertices) {
+    for (const std::uint32_t vertex : vertices) {
+        const glm::dvec3 rounding = rounding_.empty() ? glm::dvec3(0.0) : glm::dvec3(rounding_[vertex]);
+        bounds_.add(glm::dvec3(result_.scene.positions[vertex]) + rounding);
+    }
 }
 
 void SceneBuilder::append(const Polygon& polygon) { result_.scene.polygons.push_back(polygon); }
@@ -369,6 +321,7 @@ bool SceneBuilder::addPolygonWithHoles(std::span<const std::uint32_t> vertices, 
     }
 
     ++result_.report.inputPolygons;
+    growBounds(border);
     corners_.assign(vertices.begin(), vertices.end());
     surface_.clear();
     material_ = material;
@@ -379,8 +332,27 @@ bool SceneBuilder::addPolygonWithHoles(std::span<const std::uint32_t> vertices, 
     return true;
 }
 
+void SceneBuilder::noteSinglePrecision(const glm::vec3& stored, double metres) {
+    const float largest = std::max({std::abs(stored.x), std::abs(stored.y), std::abs(stored.z)});
+    if (static_cast<double>(largest) * metres * std::numeric_limits<float>::epsilon() <= coarsest_) return;
+    const float next = std::nextafter(largest, std::numeric_limits<float>::infinity());
+    if (std::isfinite(next)) coarsest_ = std::max(coarsest_, static_cast<double>(next - largest) * metres);
+}
+
+/// Of a file that has its coordinates in single precision, and so far from its origin that this shows.
+void SceneBuilder::warnOfRounding() {
+    if (coarsest_ > kCoarse * bounds_.diagonal())
+        warn(fmt::format("coordinates are rounded to {:.2g} m: the file has them in single precision and far from its "
+                         "origin, in a scene of {:.3g} m; write them nearer to the origin, or in double precision",
+                         coarsest_, bounds_.diagonal()));
+}
+
 ReadResult SceneBuilder::finish() {
     const ReadReport& report = result_.report;
+    if (!options_.origin) {
+        result_.report.neededOrigin = distantOrigin(bounds_);
+        if (report.neededOrigin != glm::dvec3(0.0)) return std::exchange(result_, {});
+    }
     if (result_.scene.polygons.empty()) {
         if (report.inputPolygons == 0) throw InputError(file_ + ": found no polygons, expected at least one");
         throw InputError(fmt::format("{}: found no usable polygon among {}: {} with a coordinate that is not "
@@ -397,6 +369,7 @@ ReadResult SceneBuilder::finish() {
                          kMostFanCorners));
     if (fans_ > 0)
         warn(fmt::format("{} polygons touch or cross themselves and were split into fans of triangles", fans_));
+    warnOfRounding();
     result_.report.warnings = mergeWarnings(result_.report.warnings);
     return std::exchange(result_, {});
 }

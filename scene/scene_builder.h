@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/distant_origin.h"
 #include "scene/scene_reader.h"
 
 #include <glm/vec3.hpp>
@@ -38,9 +39,15 @@ public:
     /// Takes the memory for this many, so that growing does not need it twice. More or fewer may follow.
     void reserve(std::size_t positions, std::size_t polygons);
 
-    /// Adds a vertex, in metres, and returns its index. Coordinates that are not finite in single precision
+    /// The place in the scene of one in the file, in metres; see Scene::origin.
+    glm::vec3 local(const glm::dvec3& metres) const { return placeInScene(result_.scene, metres); }
+
+    /// Adds a vertex, in metres of the file, and returns its index. Coordinates that are not finite in single precision
     /// are allowed: the polygons that use them are dropped and counted.
     std::uint32_t addPosition(const glm::dvec3& metres);
+
+    /// Tells that the file has these coordinates in single precision, in units of `metres`; see warnOfRounding.
+    void noteSinglePrecision(const glm::vec3& stored, double metres);
 
     /// Adds a material and returns its index. Reflectance is clamped to [0, 0.99], emission to
     /// [0, 1e30], with one warning per material. The numbers must be finite.
@@ -99,7 +106,7 @@ public:
     void warnUnlessStrict(const std::string& text);
 
     /// The scene and the report; the builder is empty afterwards. Throws InputError if no polygon is left, or nothing larger
-    /// than 1e-10 m.
+    /// than 1e-10 m, unless another origin is needed (see ReadReport::neededOrigin).
     ReadResult finish();
 
 private:
@@ -108,6 +115,8 @@ private:
     bool addQuad();
     bool addSplit();
     void append(const Polygon& polygon);
+    void growBounds(std::span<const std::uint32_t> vertices);
+    void warnOfRounding();
 
     std::uint32_t cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
     template <typename Read>
@@ -119,6 +128,10 @@ private:
     ReadOptions options_;
     std::uintmax_t bytes_ = 0; //!< of the scene's files
     ReadResult result_;
+    std::vector<glm::vec3>
+        rounding_;          //!< #positions, what the conversion to single precision lost; until the origin is known
+    PlaceBounds bounds_;    //!< of the vertices that polygons use
+    double coarsest_ = 0.0; //!< metres: distance of neighbouring numbers where the file has single precision
     std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;
     std::size_t droppedFans_ = 0;

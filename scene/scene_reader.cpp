@@ -46,7 +46,15 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
     if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
         throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
                                      options.metresPerUnit));
-    if (const Reader* reader = readerOf(path)) return reader->read(path, options);
+    if (const Reader* reader = readerOf(path)) {
+        ReadResult result = reader->read(path, options);
+        const glm::dvec3 needed = result.report.neededOrigin;
+        if (needed == glm::dvec3(0.0)) return result;
+        result = {};
+        ReadOptions placed = options;
+        placed.origin = needed;
+        return reader->read(path, placed);
+    }
     throw InputError(fmt::format("{}: found the extension {}, allowed are {}", path.string(),
                                  inQuotes(path.extension().string()), sceneExtensions()));
 }

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct ReadOptions {
     /// A scene with more is an InputError, so that a small file in which much is shown many times cannot fill the memory;
     /// 0: 2^20 and one for each byte of its files, more than any file has that says each polygon once.
     std::size_t mostPolygons = 0;
+    /// Metres, the scene's: see Scene::origin. None: readScene finds it, the readers behind it take 0 0 0.
+    std::optional<glm::dvec3> origin{};
 };
 
 /// What a user changed of a scene, and how.
@@ -38,8 +41,11 @@ struct ReadReport {
     std::size_t degeneratePolygons = 0; //!< dropped: no area in single precision
     std::size_t splitPolygons = 0;      //!< non-planar or concave quads and larger polygons, split into triangles
     std::size_t missingImages = 0;      //!< could not be read, see the warnings
-    std::vector<std::string> warnings;  //!< one line each, with the file's name
-    AppliedOverrides overrides;         //!< made after reading
+    /// Metres. Where ReadOptions::origin was none, the origin that the scene needs; if it is not 0 0 0, the scene is not as
+    /// good as it can be, and may be empty.
+    glm::dvec3 neededOrigin{0.0};
+    std::vector<std::string> warnings; //!< one line each, with the file's name
+    AppliedOverrides overrides;        //!< made after reading
 };
 
 struct ReadResult {
@@ -48,6 +54,7 @@ struct ReadResult {
 };
 
 /// Reads a scene by the extension of its name: .obj, .gltf, .glb, .ply, .stl or .mgf. All lengths of the result are metres.
+/// A scene that lies far from the file's origin is read a second time, relative to an origin of its own.
 /// Throws InputError, with file and place, if the file cannot be used; UsageError if `metresPerUnit` is not above 0 and finite,
 /// or not 1 for glTF.
 ReadResult readScene(const std::filesystem::path& path, const ReadOptions& options = {});

@@ -100,7 +100,11 @@ void readBinary(const std::string& file, std::string_view content, const ReadOpt
     for (std::size_t k = 0; k < count; ++k) {
         std::array<float, 12> numbers; // the normal, which is not used, and three vertices
         std::memcpy(numbers.data(), content.data() + kBegin + k * kFacetBytes, sizeof numbers);
-        for (std::size_t v = 3; v < 12; v += 3) facets.addVertex({numbers[v], numbers[v + 1], numbers[v + 2]});
+        for (std::size_t v = 3; v < 12; v += 3) {
+            const glm::vec3 vertex(numbers[v], numbers[v + 1], numbers[v + 2]);
+            facets.builder().noteSinglePrecision(vertex, options.metresPerUnit);
+            facets.addVertex(glm::dvec3(vertex));
+        }
         facets.endFacet();
         if ((k + 1) % kReportEvery == 0) progress.advance(kReportEvery);
     }

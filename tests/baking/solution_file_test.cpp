@@ -114,13 +114,13 @@ TEST(SolutionFile, IsNotWrittenWithValuesThatAreNotFinite) {
 
 TEST(SolutionFile, StartsASolverOfTheSamePatchesOnly) {
     const std::filesystem::path path = written("start.glb", room().solution);
-    EXPECT_EQ(readStart(path, room().mesh).size(), room().mesh.size());
+    EXPECT_EQ(readStart(path, room().mesh, {}).size(), room().mesh.size());
     PatchMesh moved = room().mesh;
     moved.positions[3].x += 1e-3F;
-    EXPECT_THROW(readStart(path, moved), InputError);
+    EXPECT_THROW(readStart(path, moved, {}), InputError);
     PatchMesh fewer = room().mesh;
     fewer.corners.pop_back();
-    EXPECT_THROW(readStart(path, fewer), InputError);
+    EXPECT_THROW(readStart(path, fewer, {}), InputError);
 }
 
 /// The file with its JSON part changed.

@@ -132,7 +132,7 @@ class Gltf:
 
 class Ply:
     """A baked .ply: its header, its vertices as dictionaries, its faces as tuples of indices."""
-    TYPES = {"float": "f", "uchar": "B", "uint": "I"}
+    TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I"}
 
     def __init__(self, path):
         content = Path(path).read_bytes()
