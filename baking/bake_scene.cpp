@@ -1,6 +1,8 @@
 #include "baking/bake_scene.h"
 
+#include "baking/dark_result.h"
 #include "baking/solution_file.h"
+#include "baking/stray_light.h"
 #include "core/checksum.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
@@ -153,8 +155,22 @@ void solveComputed(const BakeOptions& options, const Task& task, BakedScene& res
     result.seconds.solve = watch.lap();
 }
 
-void collectWarnings(const BakeOptions& options, BakedScene& result) {
+/// Of a scene that has light.
+void solveLit(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+    std::vector<RgbSum> start;
+    if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh, result.scene->origin);
+    const auto solveBy = options.instantRadiosity               ? solveWithVirtualLights
+                         : usesLines(options.solver.method)     ? solveWithLines
+                         : options.formFactors.transport.stored ? solveStored
+                                                                : solveComputed;
+    solveBy(options, {problem, start}, result, progress);
+    if (!result.energyCheck.beforeRepair) result.energyCheck = checkEnergy(result, options, {});
+    dropStrayLight(result, result.solution);
+}
+
+void collectWarnings(const BakeOptions& options, std::size_t strayRays, BakedScene& result) {
     const auto warn = [&](std::string text) { result.warnings.push_back(std::move(text)); };
+    for (std::string& text : warningsOfDarkness(result, result.solution, strayRays)) warn(std::move(text));
     if (const auto text = warningOf(result.blackBacks)) warn(*text);
     for (std::string& text : energyWarnings(result, options)) warn(std::move(text));
     // Specks as small as the weld tolerance are no news; where they matter for the picture, they are.
@@ -186,18 +202,13 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     if (options.perLight) checkCheckpoints(options, 1, 1 + lightGroups(*result.scene, result.mesh).size());
     result.seconds.mesh = watch.lap();
 
-    const SolverProblem problem(
-        result.mesh,
-        DirectLight(*result.rays, options.directLight).irradiance(result.mesh, lightsOf(*result.scene), progress));
+    DirectIrradiance direct =
+        directIrradiance(result.mesh, *result.rays, options.directLight, lightsOf(*result.scene), progress);
     result.seconds.directLight = watch.lap();
-    std::vector<RgbSum> start;
-    if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh, result.scene->origin);
-    const auto solveBy = options.instantRadiosity               ? solveWithVirtualLights
-                         : usesLines(options.solver.method)     ? solveWithLines
-                         : options.formFactors.transport.stored ? solveStored
-                                                                : solveComputed;
-    solveBy(options, {problem, start}, result, progress);
-    if (!result.energyCheck.beforeRepair) result.energyCheck = checkEnergy(result, options, {});
+    if (isDark(result.mesh, direct.values))
+        result.solution = darkness(result.mesh.size());
+    else
+        solveLit(options, SolverProblem(result.mesh, std::move(direct.values)), result, progress);
     result.blackBacks = findBlackBacks(result.mesh, *result.rays, result.solution);
     watch.lap();
 
@@ -206,7 +217,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
         reconstructAverage(result.mesh, *result.scene, result.solution, options.reconstruction, &result.separatedFaces);
     progress.end();
     result.seconds.bake = watch.lap();
-    collectWarnings(options, result);
+    collectWarnings(options, direct.strayRays, result);
     return result;
 }
 

@@ -12,6 +12,7 @@ namespace lambert {
 namespace {
 
 constexpr double kPercentile = 0.99;
+constexpr double kStrayShare = 1e-7;  ///< of the brightest face
 constexpr double kDisplayValue = 0.9; ///< of the percentile
 
 struct FaceValue {
@@ -51,6 +52,10 @@ Histogram collect(const BakedMesh& mesh, Quantity quantity, bool withEmitters) {
         histogram.area += area;
         if (const double value = faceValue(mesh, face, quantity); value > 0.0) histogram.lit.push_back({value, area});
     }
+    // Less is what rays bring that slip between polygons; a face with nothing else is not lit.
+    double brightest = 0.0;
+    for (const FaceValue& face : histogram.lit) brightest = std::max(brightest, face.value);
+    std::erase_if(histogram.lit, [&](const FaceValue& face) { return face.value < kStrayShare * brightest; });
     std::sort(histogram.lit.begin(), histogram.lit.end(), [](const FaceValue& a, const FaceValue& b) {
         return std::tie(a.value, a.area) < std::tie(b.value, b.area);
     });

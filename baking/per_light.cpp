@@ -1,5 +1,8 @@
 #include "baking/per_light.h"
 
+#include "baking/dark_result.h"
+#include "baking/stray_light.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -22,28 +25,14 @@ private:
     std::vector<Rgb> other_;
 };
 
-bool isDark(const PatchMesh& mesh, const std::vector<RgbSum>& direct) {
-    return std::all_of(direct.begin(), direct.end(), [](const RgbSum& e) { return e == RgbSum(0.0); }) &&
-           std::all_of(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(),
-                       [](const Rgb& b) { return b == Rgb(0.0F); });
-}
-
-/// Of lights that reach nothing.
-RadiositySolution darkness(std::size_t patches) {
-    RadiositySolution solution;
-    solution.radiosity.assign(patches, RgbSum(0.0));
-    solution.irradiance.assign(patches, RgbSum(0.0));
-    solution.covered.assign(patches, 0.0F);
-    return solution;
-}
-
 BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& solver, const PerLightOptions& o,
                      Progress& progress) {
     const OtherEmission emission(scene.mesh, emittedBy(group, scene.mesh));
-    std::vector<RgbSum> direct =
-        DirectLight(*scene.rays, o.directLight).irradiance(scene.mesh, sourcesOf(group, *scene.scene), progress);
-    const RadiositySolution solution =
-        isDark(scene.mesh, direct) ? darkness(scene.mesh.size()) : solver(SolverProblem(scene.mesh, std::move(direct)));
+    DirectIrradiance direct =
+        directIrradiance(scene.mesh, *scene.rays, o.directLight, sourcesOf(group, *scene.scene), progress);
+    const RadiositySolution solution = isDark(scene.mesh, direct.values)
+                                           ? darkness(scene.mesh.size())
+                                           : solver(SolverProblem(scene.mesh, std::move(direct.values)));
     BakedMesh baked = reconstructAverage(scene.mesh, *scene.scene, solution, o.reconstruction);
     return {std::move(group),           solution.energy,
             solution.iterations,        solution.residual,

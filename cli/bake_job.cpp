@@ -55,6 +55,15 @@ Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Pictu
     return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);
 }
 
+bool isBlack(const Image& image) {
+    return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0.0F); });
+}
+
+bool isBlack(const BakedMesh& mesh, Quantity quantity) {
+    const auto& shown = quantity == Quantity::Radiosity ? mesh.radiosity : mesh.irradiance;
+    return std::all_of(shown.begin(), shown.end(), [](const Rgb& value) { return value == Rgb(0.0F); });
+}
+
 std::string solverText(const BakedScene& baked) {
     if (baked.instantRadiosity)
         return fmt::format("{} virtual point lights, {:.3g} rays", baked.instantRadiosity->lights,
@@ -69,6 +78,7 @@ std::string solverText(const BakedScene& baked) {
 /// Which form factors, and how many rays they took.
 std::string transportText(const BakeArguments& a, const BakedScene& baked) {
     if (baked.instantRadiosity) return std::string(kInstantRadiosity);
+    if (!baked.stochastic && !baked.plan && a.transport.formFactors.empty()) return "no light to follow";
     const std::string solver(nameOf(solverOptions(a.transport).method));
     if (baked.stochastic) return a.transport.method.value_or("local-lines") + "; " + solver;
     return fmt::format("{}: {:.3g} rays; {}",
@@ -187,9 +197,18 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     if (!job.solution.empty()) writeSolution(solutionOf(a, job, baked), job.solution);
     const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, filesRead(a, job));
     std::optional<Picture> shot;
+    std::string pictureWarning;
     if (!job.image.empty()) {
         shot = picture(pictureArguments(a, job), *baked.scene, *baked.rays);
-        writeImage(renderPicture(a, baked, *shot, exposure, progress), shot->path, exposure);
+        const Image image = renderPicture(a, baked, *shot, exposure, progress);
+        if (isBlack(image) && !isBlack(baked.baked, output.quantity)) {
+            pictureWarning =
+                fmt::format("{}: the picture is black: its camera sees nothing that is lit, only backs, shadow "
+                            "or nothing at all; give another with --eye and --look-at",
+                            shot->path.string());
+            log.warning(pictureWarning);
+        }
+        writeImage(image, shot->path, exposure);
     }
 
     BakeOutcome outcome;
@@ -197,6 +216,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     outcome.seconds = total.seconds();
     outcome.report = bakeReport({baked, read.report, sceneOf(a, job), a.transport, a.run, shot,
                                  static_cast<double>(exposure), readSeconds, writeSeconds, outcome.seconds});
+    if (!pictureWarning.empty()) outcome.report["warnings"].push_back(pictureWarning);
     if (a.perLight) outcome.report["lights"] = lightsJson(lights);
     outcome.summary = summaryOf(baked, exposure, outcome.seconds);
     outcome.patches = baked.mesh.size();

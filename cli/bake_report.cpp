@@ -141,7 +141,8 @@ Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 std::string methodName(const BakedScene& baked, const TransportArguments& transport) {
     if (baked.instantRadiosity) return std::string(kInstantRadiosity);
     if (baked.stochastic) return transport.method.value_or("local-lines");
-    return baked.plan ? std::string(nameOf(baked.plan->options.method)) : "file";
+    if (baked.plan) return std::string(nameOf(baked.plan->options.method));
+    return transport.formFactors.empty() ? "none" : "file"; // none: there was no light to follow
 }
 
 std::string solverName(const BakedScene& baked, const TransportArguments& transport) {

@@ -18,7 +18,7 @@ struct MaterialLight {
     RgbSum meanIrradiance{0.0}, meanRadiosity{0.0};
 };
 
-/// The name of the method that form factors came by; "file" if they were read.
+/// The name of the method that form factors came by; "file" if they were read, "none" if there was no light to follow.
 std::string methodName(const BakedScene& baked, const TransportArguments& transport);
 /// That of the solver; "none" for instant radiosity.
 std::string solverName(const BakedScene& baked, const TransportArguments& transport);

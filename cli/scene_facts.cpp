@@ -68,6 +68,7 @@ private:
     void lookAtLight() {
         if (facts_.emitted == glm::dvec3(0.0) && scene_.lights.empty())
             note("there is no light", "give a material one with --emit MATERIAL=r,g,b, or a sky with --sky");
+        for (const LostLight& lost : facts_.lostLight) note(lost.problem, lost.remedy);
     }
 
     void lookAtSize(bool unitIsGiven) {
@@ -201,6 +202,7 @@ SceneFacts gatherFacts(const Scene& scene, Progress& progress) {
     const RayCaster rays(prepared);
     facts.backs = sampleBackFaces(rays);
     facts.backsFromLights = sampleBackFacesFromLights(rays);
+    facts.lostLight = findLostLight(rays);
     progress.advance();
     progress.end();
     return facts;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "baking/lost_light.h"
 #include "meshing/back_faces.h"
 #include "meshing/prepare.h"
 #include "meshing/surface_check.h"
@@ -32,7 +33,8 @@ struct SceneFacts {
     PrepareReport prepared;
     SurfaceCheck surfaces;
     BackFaceSample backs, backsFromLights;
-    std::vector<LengthUnit> units; //!< guesses other than the unit in force, see guessUnits
+    std::vector<LostLight> lostLight; //!< lights that light nothing
+    std::vector<LengthUnit> units;    //!< guesses other than the unit in force, see guessUnits
 };
 
 /// Looks at a scene as it was read; prepares it, checks its surfaces and shoots some rays. Throws Cancelled.

@@ -51,6 +51,11 @@ TEST(AutomaticExposure, FollowsTheQuantity) {
     EXPECT_NEAR(shownAt(strip({{1.0F, 1.0F}}), 4.0F, Quantity::Irradiance), 0.9F, kRounding);
 }
 
+TEST(AutomaticExposure, TakesDimLightForLightButNotThatOfStrayRays) {
+    EXPECT_NEAR(shownAt(strip({{1.0F, 1.0F}, {1000.0F, 1e-6F}}), 1e-6F), 0.9F, kRounding);
+    EXPECT_NEAR(shownAt(strip({{1.0F, 1.0F}, {1000.0F, 1e-8F}}), 1.0F), 0.9F, kRounding);
+}
+
 TEST(AutomaticExposure, LeavesEmittersOutUnlessEverythingEmits) {
     BakedMesh mesh = strip({{1.0F, 1.0F}, {1.0F, 100.0F}});
     mesh.emitters[1] = true;
