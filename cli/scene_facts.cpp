@@ -68,7 +68,7 @@ private:
     void lookAtLight() {
         if (facts_.emitted == glm::dvec3(0.0) && scene_.lights.empty())
             note("there is no light", "give a material one with --emit MATERIAL=r,g,b, or a sky with --sky");
-        for (const LostLight& lost : facts_.lostLight) note(lost.problem, lost.remedy);
+        for (const LostLight& lost : facts_.lostLight) note("as good as " + lost.problem, lost.remedy);
     }
 
     void lookAtSize(bool unitIsGiven) {
