@@ -8,6 +8,7 @@
 #include "core/stopwatch.h"
 #include "formfactors/matrix_quality.h"
 #include "solver/computed_rows.h"
+#include "solver/emitter_light.h"
 
 #include <fmt/format.h>
 
@@ -20,9 +21,30 @@ namespace {
 
 constexpr double kUndividedWarning = 1e-3; ///< of the area
 
-void bakeLights(const BakeOptions& options, const LightSolver& solver, BakedScene& result, Progress& progress) {
+/// What is solved, and from where.
+struct Task {
+    const SolverProblem& problem;
+    std::span<const RgbSum> start; ///< see SolverContext
+    const LightOfMaterials& emitters;
+};
+
+void bakeLights(const BakeOptions& options, const LightOfMaterials& emitters, const LightSolver& solver,
+                BakedScene& result, Progress& progress) {
     if (options.perLight)
-        result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction}, progress);
+        result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction, emitters}, progress);
+}
+
+/// Light of emitters is found apart from form factors that are computed here; those of a file are taken at their word, and lines from
+/// the emitters miss nothing. By material where each light is to be baked alone.
+LightOfMaterials lightOfEmitters(const BakeOptions& options, BakedScene& result, Progress& progress) {
+    LightOfMaterials light;
+    if (options.instantRadiosity || usesLines(options.solver.method) || !options.formFactors.file.empty()) return light;
+    const EmitterLight emitters(*result.rays, result.mesh, options.directLight.seed);
+    if (emitters.empty()) return light;
+    light.materials.assign(emitters.materials().begin(), emitters.materials().end());
+    result.emittersIrradiance =
+        emitters.irradiance(result.mesh, progress, options.perLight ? &light.irradiance : nullptr);
+    return light;
 }
 
 CheckpointOptions solverCheckpoint(const BakeOptions& options, std::size_t solve) {
@@ -45,12 +67,6 @@ SolverCheckpoint* nextCheckpoint(const BakeOptions& options, std::string identit
     return result.checkpoints.back().get();
 }
 
-/// What is solved, and from where.
-struct Task {
-    const SolverProblem& problem;
-    std::span<const RgbSum> start; ///< see SolverContext
-};
-
 /// The whole and, if wanted, each group of lights. `formFactors` names what the rows depend on, in one line.
 void solveFor(const BakeOptions& options, const Task& task, FormFactorRows& rows, const std::string& formFactors,
               BakedScene& result, Progress& progress) {
@@ -64,9 +80,9 @@ void solveFor(const BakeOptions& options, const Task& task, FormFactorRows& rows
     SolverOptions solver = options.solver;
     solver.keepBounces = false;
     bakeLights(
-        options,
+        options, task.emitters,
         [&](const SolverProblem& light) {
-            return run({light, {}}, solver);
+            return run({light, {}, task.emitters}, solver);
         },
         result, progress);
 }
@@ -87,7 +103,7 @@ void solveWithLines(const BakeOptions& options, const Task& task, BakedScene& re
     };
     result.stochastic = run(task.problem);
     result.solution = std::move(static_cast<RadiositySolution&>(*result.stochastic));
-    bakeLights(options, run, result, progress);
+    bakeLights(options, task.emitters, run, result, progress);
     result.seconds.solve = watch.lap();
 }
 
@@ -156,14 +172,15 @@ void solveComputed(const BakeOptions& options, const Task& task, BakedScene& res
 }
 
 /// Of a scene that has light.
-void solveLit(const BakeOptions& options, const SolverProblem& problem, BakedScene& result, Progress& progress) {
+void solveLit(const BakeOptions& options, const LightOfMaterials& emitters, BakedScene& result, Progress& progress) {
+    const SolverProblem problem(result.mesh, result.lightsIrradiance, result.emittersIrradiance);
     std::vector<RgbSum> start;
     if (!options.warmStart.empty()) start = readStart(options.warmStart, result.mesh, result.scene->origin);
     const auto solveBy = options.instantRadiosity               ? solveWithVirtualLights
                          : usesLines(options.solver.method)     ? solveWithLines
                          : options.formFactors.transport.stored ? solveStored
                                                                 : solveComputed;
-    solveBy(options, {problem, start}, result, progress);
+    solveBy(options, {problem, start, emitters}, result, progress);
     if (!result.energyCheck.beforeRepair) result.energyCheck = checkEnergy(result, options, {});
     dropStrayLight(result, result.solution);
 }
@@ -204,11 +221,15 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
 
     DirectIrradiance direct =
         directIrradiance(result.mesh, *result.rays, options.directLight, lightsOf(*result.scene), progress);
+    const bool dark = isDark(result.mesh, direct.values);
+    result.lightsIrradiance = std::move(direct.values);
+    LightOfMaterials emitters;
+    if (!dark) emitters = lightOfEmitters(options, result, progress);
     result.seconds.directLight = watch.lap();
-    if (isDark(result.mesh, direct.values))
+    if (dark)
         result.solution = darkness(result.mesh.size());
     else
-        solveLit(options, SolverProblem(result.mesh, std::move(direct.values)), result, progress);
+        solveLit(options, emitters, result, progress);
     result.blackBacks = findBlackBacks(result.mesh, *result.rays, result.solution);
     watch.lap();
 

@@ -53,6 +53,9 @@ struct BakedScene : MeshedScene {
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
 
+    std::vector<RgbSum> lightsIrradiance{}; //!< #patches, E_0 of lights without area; empty: none
+    /// #patches, of all that emits, found apart from the form factors; empty: not found apart.
+    std::vector<RgbSum> emittersIrradiance{};
     std::optional<TransportPlan> plan{};                  //!< of the form factors; none: read from a file, or not used
     std::optional<RepairReport> repair{};                 //!< of the form factors; none: not repaired
     std::unique_ptr<MatrixCheckpoint> matrixCheckpoint{}; //!< see SceneMatrix

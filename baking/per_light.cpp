@@ -32,7 +32,7 @@ BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& so
         directIrradiance(scene.mesh, *scene.rays, o.directLight, sourcesOf(group, *scene.scene), progress);
     const RadiositySolution solution = isDark(scene.mesh, direct.values)
                                            ? darkness(scene.mesh.size())
-                                           : solver(SolverProblem(scene.mesh, std::move(direct.values)));
+                                           : solver(SolverProblem(scene.mesh, std::move(direct.values), o.emitters.of(group.material)));
     BakedMesh baked = reconstructAverage(scene.mesh, *scene.scene, solution, o.reconstruction);
     return {std::move(group),           solution.energy,
             solution.iterations,        solution.residual,
@@ -41,6 +41,12 @@ BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& so
 }
 
 } // namespace
+
+std::vector<RgbSum> LightOfMaterials::of(std::uint32_t material) const {
+    const auto found = std::lower_bound(materials.begin(), materials.end(), material);
+    if (irradiance.empty() || found == materials.end() || *found != material) return {};
+    return irradiance[static_cast<std::size_t>(found - materials.begin())];
+}
 
 BakedMesh withLight(BakedMesh mesh, const BakedLight& light, Quantity shown) {
     if (mesh.splitBy.empty()) mesh.splitBy = shown == Quantity::Radiosity ? mesh.radiosity : mesh.irradiance;

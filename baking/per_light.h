@@ -27,9 +27,19 @@ struct BakedLight {
 /// quads are split, so that files of all groups have the same vertices and triangles.
 BakedMesh withLight(BakedMesh mesh, const BakedLight& light, Quantity shown);
 
+/// Light of what emits where it is found apart, see EmitterLight.
+struct LightOfMaterials {
+    std::vector<std::uint32_t> materials{};        //!< that emit, ascending
+    std::vector<std::vector<RgbSum>> irradiance{}; //!< #materials × #patches, E per m²; empty: not found apart
+
+    /// #patches, or empty.
+    std::vector<RgbSum> of(std::uint32_t material) const;
+};
+
 struct PerLightOptions {
     DirectLightOptions directLight;
     ReconstructionOptions reconstruction;
+    const LightOfMaterials& emitters;
 };
 
 /// Solves one problem on the mesh of a scene.

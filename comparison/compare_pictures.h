@@ -29,7 +29,7 @@ struct VplPictures {
 struct PictureOptions {
     Camera camera;
     int width = 512, height = 512;
-    PointGatherOptions gathering{.cells = 24, .emitterPoints = 256, .skyRays = 256};
+    PointGatherOptions gathering{.cells = 24, .emitterRays = 256, .skyRays = 256};
 };
 
 /// Pictures by all methods at the effort of their anatomies with the first seed, and by the reference. Throws Cancelled.

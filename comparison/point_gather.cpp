@@ -1,12 +1,12 @@
 #include "comparison/point_gather.h"
 
-#include "comparison/emitter_light.h"
 #include "core/orthonormal_basis.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/warps.h"
 #include "scene/surface.h"
 #include "solver/direct_light.h"
+#include "solver/emitter_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,14 +26,15 @@ public:
           lights_(lights),
           options_(options),
           direct_(rays, {.skyRays = options.skyRays, .seed = options.seed}),
-          emitters_(rays, *lights.front().mesh, options.emitterPoints, options.seed) {}
+          emitters_(rays, *lights.front().mesh, options.seed) {}
 
     /// The light of each of the divisions at a point.
     void at(const Receiver& receiver, std::uint32_t index, std::span<RgbSum> sums) const {
         std::fill(sums.begin(), sums.end(), RgbSum(0.0));
         gatherReflected(receiver, index, sums);
         RgbSum same = direct_.irradiance(receiver.position, receiver.normal, index, lightsOf(rays_.scene()));
-        same += emitters_.irradiance(receiver);
+        same += emitters_.irradiance(receiver.position, receiver.normal, receiver.lift, index, options_.emitterRays)
+                    .irradiance;
         for (RgbSum& sum : sums) sum += same;
     }
 
@@ -84,14 +85,11 @@ private:
         const SurfaceSide side = sideOf(scene, polygon, front);
         if (!side) return;
         const RgbSum reflectance(reflectanceAt(scene, polygon, side, u, v));
-        const RgbSum emitted = emitters_.isKnown()
-                                   ? RgbSum(0.0)
-                                   : std::numbers::pi * RgbSum(emittedRadianceAt(scene, polygon, side, u, v));
         for (std::size_t k = 0; k < lights_.size(); ++k) {
             const PatchLookup& lookup = lights_[k].mesh->lookup;
             std::uint32_t patch = lookup.patchAt(hit, u, v);
             if (!front) patch = lookup.backPatch(hit, patch);
-            if (patch != kNone) sums[k] += emitted + reflectance * lights_[k].irradiance[patch];
+            if (patch != kNone) sums[k] += reflectance * lights_[k].irradiance[patch];
         }
     }
 

@@ -21,8 +21,8 @@ struct PatchLight {
 struct PointGatherOptions {
     int cells = 128; //!< along an edge of the square that is mapped to the directions; their square are the rays; a
                      //!< multiple of 4
-    std::uint32_t emitterPoints = 1024; //!< see EmitterLight
-    std::uint32_t skyRays = 4096;       //!< see DirectLightOptions
+    std::uint32_t emitterRays = 1024; //!< see EmitterLight
+    std::uint32_t skyRays = 4096;     //!< see DirectLightOptions
     std::uint64_t seed = 1;
 };
 
@@ -31,8 +31,7 @@ struct PointGatherOptions {
 ///     E(x) = E_0(x) + E_emitters(x) + (1/n²) Σ_rays ρ(y) E_patch(y)
 ///
 /// E_0 is that of lights without area and of the environment (see DirectLight), E_emitters see EmitterLight. Rays are
-/// cosine-distributed, one in each of n² cells; they find what surfaces reflect, and what those emitters emit that EmitterLight does
-/// not know.
+/// cosine-distributed, one in each of n² cells; they find what surfaces reflect.
 ///
 /// All `lights` are divisions of the scene of `rays` and are looked up with the same rays: their answers differ by what the
 /// patches hold and by nothing else. Emitters are those of the first. #lights × #receivers; the same whatever the number of

@@ -1,9 +1,9 @@
 #include "comparison/radiosity_reference.h"
 
-#include "comparison/emitter_light.h"
 #include "core/random.h"
 #include "formfactors/transport.h"
 #include "solver/direct_light.h"
+#include "solver/emitter_light.h"
 #include "solver/solver.h"
 
 #include <fmt/format.h>
@@ -20,8 +20,6 @@ constexpr double kFewestLines = 1024, kMostLines = 16384; ///< per patch
 constexpr double kLeastRefinement = 1.4;                  ///< of patch lengths from mesh to mesh, where 2 is aimed at
 constexpr double kLowestOrder = 1.0, kHighestOrder = 2.0;
 constexpr double kLineRatio = 4.0; ///< of the two sets of lines
-
-constexpr std::uint32_t kEmitterPoints = 256, kPatchPoints = 16; ///< of direct light, see EmitterLight
 
 /// Small against what is compared.
 constexpr SolverOptions kSolve{.tolerance = 1e-6};
@@ -68,15 +66,11 @@ struct Solved {
 Solved solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces, std::uint64_t seed,
               Progress& progress) {
     std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
-    const EmitterLight emitters(rays, mesh, kEmitterPoints, seed);
-    if (emitters.isKnown()) {
-        const std::vector<RgbSum> emitted = emitters.irradiance(mesh, kPatchPoints, seed);
-        for (std::size_t i = 0; i < mesh.size(); ++i) direct[i] += emitted[i];
-        std::fill(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), Rgb(0.0F));
-    }
+    const std::vector<RgbSum> emitted = EmitterLight(rays, mesh, seed).irradiance(mesh, progress);
+    for (std::size_t i = 0; i < mesh.size(); ++i) direct[i] += emitted[i];
+    std::fill(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), Rgb(0.0F));
     const auto isDark = [](const auto& light) { return light.x + light.y + light.z == 0; };
-    if (std::all_of(direct.begin(), direct.end(), isDark) &&
-        std::all_of(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), isDark))
+    if (std::all_of(direct.begin(), direct.end(), isDark))
         return {std::vector(static_cast<std::size_t>(1 + bounces), direct)}; // lamps that nothing sees
     const SolverProblem problem(mesh, std::move(direct));
     TransportOptions options;

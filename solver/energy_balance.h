@@ -10,7 +10,8 @@ namespace lambert {
 EnergyBalance energyBalance(const SolverProblem& problem, const FormFactorRows& rows,
                             const RadiositySolution& solution);
 
-/// What every solver ends with: completes the rows, and sets `covered` and `energy` of a solution. Throws Cancelled.
+/// What every solver ends with: completes the rows, adds B_e to the radiosity where the problem has kept it back, and sets `covered`
+/// and `energy` of a solution. Throws Cancelled.
 void settle(const SolverProblem& problem, FormFactorRows& rows, RadiositySolution& solution, Progress& progress);
 
 } // namespace lambert

@@ -10,15 +10,21 @@
 
 namespace lambert {
 
-SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance)
-    : mesh_(mesh), direct_(std::move(directIrradiance)) {
+SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance,
+                             const std::vector<RgbSum>& emittersIrradiance)
+    : mesh_(mesh), direct_(std::move(directIrradiance)), emittersApart_(!emittersIrradiance.empty()) {
+    for (std::size_t i = 0; i < direct_.size(); ++i) received_ += area(i) * direct_[i];
+    if (emittersApart_) {
+        direct_.resize(size(), RgbSum(0.0));
+        for (std::size_t i = 0; i < size(); ++i) direct_[i] += emittersIrradiance[i];
+    }
     double squares = 0.0;
     bool lit = false;
     for (std::size_t i = 0; i < size(); ++i) {
         const RgbSum b = source(i);
         squares += area(i) * glm::dot(b, b);
         const RgbSum e = direct(i);
-        lit = lit || area(i) * glm::dot(e, e) > 0.0;
+        lit = lit || area(i) * glm::dot(e, e) > 0.0 || mesh.emittedRadiosity[i] != Rgb(0.0F);
     }
     if (!(squares > 0.0) && !lit)
         throw InputError("the scene has no light: no material emits, and no light without area reaches a "
@@ -44,6 +50,7 @@ std::uint64_t SolverProblem::checksum() const {
     sum.add(mesh_.reflectance);
     sum.add(mesh_.emittedRadiosity);
     sum.add(direct_);
+    sum.add(std::uint64_t{emittersApart_});
     return sum.value();
 }
 

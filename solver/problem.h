@@ -12,21 +12,34 @@ namespace lambert {
 /// What is to be solved, but for the form factors, for every patch i and channel:
 ///
 ///     B_i = B_e,i + ρ_i E_i,   E_i = E_0,i + Σ_j F_ij B_j
+///
+/// The light of what emits may be found beforehand, apart from the form factors. E_0 then holds it, and B_e is 0 for the solver; once
+/// it has ended, settle() adds what was left out.
 class SolverProblem {
 public:
     /// `mesh` must outlive the problem. `directIrradiance` is E_0 per m², from lights without area: #patches, or empty where
-    /// there are none. Throws InputError if nothing emits and nothing is lit.
-    explicit SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance = {});
+    /// there are none. `emittersIrradiance`: the same of all that the mesh emits; empty: left to the form factors. Throws
+    /// InputError if nothing emits and nothing is lit.
+    explicit SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance = {},
+                           const std::vector<RgbSum>& emittersIrradiance = {});
 
     std::size_t size() const { return mesh_.size(); } //!< #patches
     const PatchMesh& mesh() const { return mesh_; }
 
-    double area(std::size_t i) const { return static_cast<double>(mesh_.area[i]); }                    //!< A, m²
-    RgbSum reflectance(std::size_t i) const { return RgbSum(mesh_.reflectance[i]); }                   //!< ρ
-    RgbSum emitted(std::size_t i) const { return RgbSum(mesh_.emittedRadiosity[i]); }                  //!< B_e
+    double area(std::size_t i) const { return static_cast<double>(mesh_.area[i]); }  //!< A, m²
+    RgbSum reflectance(std::size_t i) const { return RgbSum(mesh_.reflectance[i]); } //!< ρ
+    RgbSum emitted(std::size_t i) const {
+        return emittersApart_ ? RgbSum(0.0) : RgbSum(mesh_.emittedRadiosity[i]);
+    } //!< B_e, as far as form factors carry it
     RgbSum direct(std::size_t i) const { return direct_.empty() ? RgbSum(0.0) : direct_[i]; }          //!< E_0
     RgbSum source(std::size_t i) const { return emitted(i) + reflectance(i) * direct(i); }             //!< B_e + ρ E_0
     RgbSum radiosity(std::size_t i, const RgbSum& e) const { return emitted(i) + reflectance(i) * e; } //!< B_e + ρ E
+
+    /// B_e, whatever carries it.
+    RgbSum allEmitted(std::size_t i) const { return RgbSum(mesh_.emittedRadiosity[i]); }
+    /// Σ A E_0 of lights without area alone.
+    const RgbSum& received() const { return received_; }
+    bool emittersApart() const { return emittersApart_; } //!< E_0 holds their light
 
     std::vector<RgbSum> emitted() const; //!< #patches, B_e
     /// #patches: B_e + ρ E for irradiances E to begin from, B_e if there are none.
@@ -45,6 +58,8 @@ private:
 
     const PatchMesh& mesh_;
     std::vector<RgbSum> direct_;
+    bool emittersApart_ = false;
+    RgbSum received_{0.0};
     double sourceNorm_ = 0.0;
 };
 
