@@ -2,18 +2,32 @@
 
 #include "baking/interpolation.h"
 #include "core/parallel.h"
-#include "formfactors/hemicube.h"
+#include "formfactors/matrix_quality.h"
+#include "meshing/patch_offset.h"
+#include "solver/emitter_light.h"
 
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace lambert {
 
 namespace {
 
-constexpr float kOnSurface = 1e-4F; ///< of the scene's diagonal
+constexpr float kOnSurface = 1e-4F;         ///< of the scene's diagonal
+constexpr std::uint32_t kShadowRays = 1024; ///< of a point, to emitters
+constexpr int kRows = 4;                    ///< of a point in space: one for its value, all for its error
+constexpr double kOnlyBacks =
+    1e-3;                        ///< of its rays: a point of which no more meet anything but backs is inside something
+constexpr double kLeaked = 0.99; ///< of the light: an error as large leaves nothing
+constexpr float kFromBorder =
+    1e-3F; ///< of the way to its centre: a point of a patch's border belongs to that patch alone
 
 struct SurfacePoint {
     std::uint32_t patch;
@@ -42,49 +56,153 @@ std::optional<SurfacePoint> nearestFront(const BakedScene& scene, const glm::vec
     return best;
 }
 
-RgbSum interpolate(const BakedScene& scene, const SurfacePoint& point) {
-    const InterpolationWeights weights = interpolationWeights(scene.mesh, point.patch, point.position);
-    const auto& corners = scene.baked.faces[point.patch];
-    RgbSum sum(0.0);
-    for (std::size_t k = 0; k < 4; ++k)
-        if (corners[k] != kNone) sum += weights[k] * RgbSum(scene.baked.irradiance[corners[k]]);
-    return sum;
-}
+double sum(const RgbSum& v) { return v.x + v.y + v.z; }
 
-/// What the patches and the lights without area send to a point in space.
-RgbSum gather(const BakedScene& scene, const DirectLight& lights, const Hemicube& hemicube, const ProbePoint& point,
-              std::uint32_t index, const glm::vec3& normal, RowAccumulator& accumulator) {
-    const glm::vec3 origin = point.position + scene.rays->originOffset(0.0F) * normal;
-    hemicube.addHemicube(origin, normal, 0.0F, accumulator);
-    FormFactorRow row;
-    accumulator.take(row);
-    RgbSum sum = lights.irradiance(point.position, normal, index, lightsOf(*scene.scene));
-    for (const FormFactor& entry : row.entries)
-        sum += static_cast<double>(entry.value) * scene.solution.radiosity[entry.patch];
-    return sum;
-}
+/// The whole light, in parts that can be had at a point, and the rest.
+class Probe {
+public:
+    Probe(const BakedScene& scene, const BakeOptions& options, Progress& progress)
+        : scene_(scene),
+          lights_(*scene.rays, options.directLight),
+          emitters_(*scene.rays, scene.mesh, options.directLight.seed),
+          method_(makeMethod(planOf(scene, options, progress), scene.mesh, *scene.rays)),
+          distinctRows_(options.formFactors.transport.method != TransportMethod::ClosedForm),
+          accumulators_(static_cast<std::size_t>(threadCount()), RowAccumulator(scene.mesh.size())) {
+        const std::vector<RgbSum> direct =
+            scene.emittersIrradiance.empty() ? emitters_.irradiance(scene.mesh, progress) : scene.emittersIrradiance;
+        RadiositySolution reflected;
+        reflected.covered = scene.solution.covered;
+        reflected.irradiance = scene.solution.irradiance;
+        for (std::size_t i = 0; i < direct.size(); ++i) reflected.irradiance[i] -= direct[i];
+        for (std::size_t i = 0; i < scene.lightsIrradiance.size(); ++i)
+            reflected.irradiance[i] -= scene.lightsIrradiance[i];
+        vertexIrradiance_ = reconstructAverage(scene.mesh, *scene.scene, reflected, options.reconstruction).irradiance;
+        patchIrradiance_ = std::move(reflected.irradiance);
+    }
+
+    ProbeReading onSurface(const SurfacePoint& point, std::uint32_t index) const {
+        const PatchMesh& mesh = scene_.mesh;
+        if (static_cast<double>(scene_.solution.covered[point.patch]) > kCovered) return unknown(true);
+        // A point of a wall's foot is neither before nor behind the wall.
+        const float lift = patchOriginOffset(*scene_.rays, mesh, point.patch);
+        const glm::vec3 inward = mesh.centroid[point.patch] - point.position;
+        const float length = glm::length(inward);
+        const float step = std::min(length, kFromBorder * length + 4.0F * lift);
+        const glm::vec3 inside = length > 0.0F ? point.position + step / length * inward : point.position;
+        ProbeReading reading = direct(inside, mesh.normal[point.patch], lift, index);
+        reading.onSurface = true;
+        reading.irradiance = glm::max(reading.irradiance + interpolated(point.patch, point.position), 0.0);
+        RgbSum error = interpolated(point.patch, mesh.centroid[point.patch]) - patchIrradiance_[point.patch];
+        RgbSum squares = reading.standardError * reading.standardError + error * error;
+        if (scene_.stochastic) {
+            error = RgbSum(scene_.stochastic->standardError[point.patch]);
+            squares += error * error;
+        }
+        reading.standardError = glm::sqrt(squares);
+        return reading;
+    }
+
+    ProbeReading inSpace(const glm::vec3& point, const glm::vec3& normal, std::uint32_t index, int worker) {
+        RowAccumulator& accumulator = accumulators_[static_cast<std::size_t>(worker)];
+        const float lift = scene_.rays->originOffset(0.0F);
+        const auto count = static_cast<std::uint32_t>(distinctRows_ ? kRows : 1);
+        RgbSum total(0.0), squares(0.0);
+        double back = 0.0;
+        FormFactorRow row;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            method_->pointRow(point + lift * normal, normal, count * index + k, accumulator);
+            accumulator.take(row);
+            RgbSum gathered(0.0);
+            for (const auto& [patch, factor] : row.entries)
+                gathered += factor * (scene_.solution.radiosity[patch] - RgbSum(scene_.mesh.emittedRadiosity[patch]));
+            total += gathered;
+            squares += gathered * gathered;
+            back += row.back / count;
+        }
+        if (back > 1.0 - kOnlyBacks) return unknown(false);
+        ProbeReading reading = direct(point, normal, lift, index);
+        const double n = count;
+        const RgbSum mean = total / n;
+        reading.irradiance += mean;
+        if (count > 1) {
+            const RgbSum variance = glm::max(squares / n - mean * mean, RgbSum(0.0)) / (n - 1.0);
+            reading.standardError = glm::sqrt(reading.standardError * reading.standardError + variance);
+        }
+        const double light = sum(reading.irradiance);
+        return light > 0.0 && sum(reading.standardError) >= kLeaked * light ? unknown(false) : reading;
+    }
+
+private:
+    static ProbeReading unknown(bool onSurface) {
+        const RgbSum nan(std::numeric_limits<double>::quiet_NaN());
+        return {nan, nan, onSurface};
+    }
+
+    /// As fine as the options allow, now that there are few rows; where they have none for points, by local lines.
+    static TransportPlan planOf(const BakedScene& scene, const BakeOptions& options, Progress& progress) {
+        TransportOptions transport = options.formFactors.transport;
+        transport.stored = false;
+        transport.mostRays = std::numeric_limits<double>::max();
+        transport.randomRotation = true; // or all rows of a point are one
+        if (!hasPointRows(transport.method)) {
+            transport.method = TransportMethod::LocalLines;
+            transport.lines.reset();
+        }
+        return planTransport(transport, scene.mesh, *scene.rays, progress);
+    }
+
+    RgbSum interpolated(std::uint32_t patch, const glm::vec3& position) const {
+        const InterpolationWeights weights = interpolationWeights(scene_.mesh, patch, position);
+        const auto& corners = scene_.baked.faces[patch];
+        RgbSum result(0.0);
+        for (std::size_t k = 0; k < 4; ++k)
+            if (corners[k] != kNone) result += weights[k] * RgbSum(vertexIrradiance_[corners[k]]);
+        return result;
+    }
+
+    /// Of emitters and of lights without area. Of the latter two sets of points and rays tell the error.
+    ProbeReading direct(const glm::vec3& point, const glm::vec3& normal, float lift, std::uint32_t index) const {
+        const EstimatedLight emitted = emitters_.irradiance(point, normal, lift, index, kShadowRays);
+        ProbeReading reading{emitted.irradiance, emitted.standardError};
+        const LightSources sources = lightsOf(*scene_.scene);
+        if (sources.empty()) return reading;
+        const std::array lit{lights_.irradiance(point, normal, 2 * index, sources),
+                             lights_.irradiance(point, normal, 2 * index + 1, sources)};
+        const RgbSum half = 0.5 * (lit[0] - lit[1]);
+        reading.irradiance += 0.5 * (lit[0] + lit[1]);
+        reading.standardError = glm::sqrt(reading.standardError * reading.standardError + half * half);
+        return reading;
+    }
+
+    const BakedScene& scene_;
+    DirectLight lights_;
+    EmitterLight emitters_;
+    std::unique_ptr<FormFactorMethod> method_;
+    bool distinctRows_; ///< rows of other numbers differ
+    std::vector<RowAccumulator> accumulators_;
+    std::vector<RgbSum> patchIrradiance_; ///< #patches, without direct light
+    std::vector<Rgb> vertexIrradiance_;   ///< the same, #vertices of the baked mesh
+};
 
 } // namespace
 
-std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, std::span<const ProbePoint> points) {
+std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, const BakeOptions& options,
+                                          std::span<const ProbePoint> points, Progress& progress) {
     const float reach = kOnSurface * scene.rays->bounds().diagonal();
-    const Hemicube hemicube(scene.mesh, *scene.rays, {});
-    const DirectLight lights(*scene.rays, {});
-    std::vector<RowAccumulator> accumulators(static_cast<std::size_t>(threadCount()),
-                                             RowAccumulator(scene.mesh.size()));
+    Probe probe(scene, options, progress);
     std::vector<ProbeReading> readings(points.size());
-    parallelFor(points.size(), 16, [&](std::size_t begin, std::size_t end, int worker) {
+    progress.begin("probe", points.size());
+    parallelFor(points.size(), 4, [&](std::size_t begin, std::size_t end, int worker) {
         for (std::size_t i = begin; i < end; ++i) {
+            const auto index = static_cast<std::uint32_t>(i);
             const glm::vec3 normal = glm::normalize(points[i].normal);
             const auto surface = nearestFront(scene, points[i].position, normal, reach);
-            readings[i].onSurface = surface.has_value();
-            if (surface && scene.stochastic)
-                readings[i].standardError = RgbSum(scene.stochastic->standardError[surface->patch]);
-            readings[i].irradiance = surface ? interpolate(scene, *surface)
-                                             : gather(scene, lights, hemicube, points[i], static_cast<std::uint32_t>(i),
-                                                      normal, accumulators[static_cast<std::size_t>(worker)]);
+            readings[i] =
+                surface ? probe.onSurface(*surface, index) : probe.inSpace(points[i].position, normal, index, worker);
         }
+        progress.advance(end - begin);
     });
+    progress.end();
     return readings;
 }
 

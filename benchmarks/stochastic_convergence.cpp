@@ -57,7 +57,8 @@ double errorAtPoints(BakedScene& scene, const std::vector<Reference>& reference)
     scene.baked = reconstructAverage(scene.mesh, *scene.scene, scene.solution, {});
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
-    const std::vector<ProbeReading> readings = probeIrradiance(scene, points);
+    Progress progress;
+    const std::vector<ProbeReading> readings = probeIrradiance(scene, {}, points, progress);
     double squares = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         const double difference = readings[i].irradiance.y - reference[i].irradiance.y;
@@ -109,7 +110,7 @@ void takeFromFinerMesh(const Arguments& a, std::vector<Reference>& reference) {
     fine.baked = reconstructAverage(fine.mesh, *fine.scene, fine.solution, {});
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
-    const std::vector<ProbeReading> readings = probeIrradiance(fine, points);
+    const std::vector<ProbeReading> readings = probeIrradiance(fine, {}, points, progress);
     std::vector<Reference> kept;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         reference[i].irradiance = readings[i].irradiance;

@@ -42,6 +42,16 @@ std::string table(const std::vector<SensorPoint>& points, const std::vector<Prob
     return text;
 }
 
+/// Numbers that are none become null.
+nlohmann::ordered_json probesJson(const std::vector<ProbeReading>& readings) {
+    auto probes = nlohmann::ordered_json::array();
+    for (const ProbeReading& reading : readings)
+        probes.push_back({{"irradiance", jsonVector(reading.irradiance)},
+                          {"standard_error", jsonVector(reading.standardError)},
+                          {"on_surface", reading.onSurface}});
+    return probes;
+}
+
 ExitCode probe(const ProbeArguments& a) {
     const BakeOptions options = bakeOptions(a.transport, a.run);
     std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
@@ -60,7 +70,8 @@ ExitCode probe(const ProbeArguments& a) {
     logReport(a.run, read.report);
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
-    const std::vector<ProbeReading> readings = probeIrradiance(baked, pointsInScene(points, *baked.scene));
+    const std::vector<ProbeReading> readings =
+        probeIrradiance(baked, options, pointsInScene(points, *baked.scene), progress);
     const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
     if (inSpace > 0)
         logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));
@@ -76,6 +87,7 @@ ExitCode probe(const ProbeArguments& a) {
         auto report = bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt,
                                   readSeconds, writing.seconds(), total.seconds()});
         for (const std::string& warning : verdict.warnings) report["warnings"].push_back(warning);
+        report["probes"] = probesJson(readings);
         writeJson(report, a.run.json);
     }
     removeCheckpoints(baked);

@@ -24,6 +24,11 @@ BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
     return bakeScene(scene, options, progress);
 }
 
+std::vector<ProbeReading> probed(const BakedScene& baked, std::span<const ProbePoint> points) {
+    Progress progress;
+    return probeIrradiance(baked, {}, points, progress);
+}
+
 TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {
     const Material wall = greyMaterial("wall", 0.5F, 1.0F);
     const BakedScene baked = bake(boxScene({2, 1.5F, 1}, {wall, wall, wall, wall, wall, wall}), 300, 32);
@@ -145,7 +150,7 @@ TEST(Probe, PointOnASurfaceIsInterpolatedAndPointInSpaceIsGathered) {
     const BakedScene baked = bake(boxScene(glm::vec3(1.0F), {wall, wall, wall, wall, wall, wall}), 200, 32);
     const std::array points{ProbePoint{{0.3F, 0.4F, 0}, {0, 0, 1}}, ProbePoint{{0.3F, 0.4F, 0.5F}, {0, 3, 4}},
                             ProbePoint{{0, 0, 0}, {0, 0, 1}}};
-    const auto readings = probeIrradiance(baked, points);
+    const auto readings = probed(baked, points);
     EXPECT_TRUE(readings[0].onSurface);
     EXPECT_FALSE(readings[1].onSurface);
     for (const ProbeReading& reading : readings) EXPECT_NEAR(reading.irradiance.x, 2.0, 1e-4);
@@ -158,7 +163,7 @@ TEST(Probe, PointUnderATwoSidedSheetReadsTheSideItFaces) {
     materials[0].twoSided = true;
     const BakedScene baked = bake(quadScene(quads, materials), 200, 32);
     const std::array points{ProbePoint{{0.5F, 0.5F, 0}, {0, 0, 1}}, ProbePoint{{0.5F, 0.5F, 0}, {0, 0, -1}}};
-    const auto readings = probeIrradiance(baked, points);
+    const auto readings = probed(baked, points);
     EXPECT_GT(readings[0].irradiance.x, 0.1);
     EXPECT_EQ(readings[1].irradiance.x, 0.0);
 }

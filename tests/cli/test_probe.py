@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """`lambert probe`: values against exact and independent ones, and the reading and writing of points."""
+import math
 import unittest
 
 from lambert_cli import DATA, SMALL, ProgramTest, read_json, read_table, relative_rms
@@ -34,6 +35,81 @@ class TheFurnace(ProbeTest):
     def test_length_of_the_normal_does_not_matter(self):
         rows = self.probe(FURNACE, "1,0.7,0.5,0,1e-3,0\n1,0.7,0.5,0,1e3,0\n", *SMALL)
         self.assertEqual(rows[0][6:9], rows[1][6:9])
+
+
+def turned(point):
+    """By 0.9 about the z axis, then by 0.6 about the x axis."""
+    x, y, z = point
+    x, y = math.cos(.9) * x - math.sin(.9) * y, math.sin(.9) * x + math.cos(.9) * y
+    return [x, math.cos(.6) * y - math.sin(.6) * z, math.sin(.6) * y + math.cos(.6) * z]
+
+
+def same(point):
+    return list(point)
+
+
+class TheSmallLamp(ProbeTest):
+    """A sphere of radiance 10 at 1 m above a floor of 2 x 2 m: E = L π r² cosθ / d²."""
+    PLACES = [(0, 0, 0), (.5, 0, 0), (1, 0, 0), (0, 0, .9), (0, .5, 0)]  # the last one in the air
+
+    def scene(self, radius, place):
+        def vertex(name, *point):
+            return "v {} =\n\tp {} {} {}\n".format(name, *place(point))
+        text = ("m floor =\n\tc\n\trd 0.5\n\tsides 1\nm lamp =\n\tc\n\ted 31.4159265\n\tsides 1\n" +
+                vertex("a", -1, 0, 1) + vertex("b", 1, 0, 1) + vertex("c1", 1, 0, -1) + vertex("d", -1, 0, -1) +
+                "m floor\nf a b c1 d\n" + vertex("s", 0, 1, 0) + f"m lamp\nsph s {radius}\n")
+        return self.write("lamp.mgf", text)
+
+    def assert_found(self, radius, *options, place=same, unit=1.0):
+        points = "".join(",".join(repr(v) for v in [unit * x for x in place(p)] + place((0, 1, 0))) + "\n"
+                         for p in self.PLACES)
+        rows = self.probe(self.scene(radius, place), points, "--patches", 200, *options)
+        for row, (x, y, z) in zip(rows, self.PLACES):
+            height = 1 - y
+            distance = math.sqrt(x * x + height * height + z * z)
+            expected = 10 * math.pi * radius ** 2 * height / distance ** 3
+            for k in (6, 7, 8):
+                # The polyhedron that stands for the sphere is a little smaller.
+                self.assert_close(row[k], expected, 0.03, (radius, options, row[:6]))
+                self.assertLess(row[k + 3], 0.02 * expected)
+
+    def test_lamps_from_a_millimetre_on_are_found_on_the_floor_and_in_the_air(self):
+        for radius in (0.0005, 0.001, 0.005, 0.015):
+            self.assert_found(radius)
+
+    def test_every_method_finds_them(self):
+        for options in (["--method", "hemisphere"], ["--method", "local-lines"],
+                        ["--method", "closed-form"], ["--storage", "none", "--solver", "southwell"]):
+            self.assert_found(0.0005, *options)
+
+    def test_turned_and_in_millimetres(self):
+        self.assert_found(0.001, place=turned)
+        self.assert_found(0.001, "--unit", "0.001", place=turned, unit=0.001)
+
+
+class WhatCannotBeKnown(ProbeTest):
+    # A room of 2 m with fronts inward and a lamp as its ceiling; in it a solid of 0.4 m, fronts outward.
+    def test_points_inside_a_solid_and_on_a_hidden_face_are_nan(self):
+        def box(low, high, inward, first):
+            corners = [[(low, high)[i], (low, high)[j], (low, high)[k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+            faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+            vertices = "".join("v {} {} {}\n".format(*c) for c in corners)
+            order = (lambda f: f[::-1]) if inward else (lambda f: f)
+            return vertices, ["f " + " ".join(str(first + v) for v in order(face)) + "\n" for face in faces]
+        vertices, faces = box(0, 2, True, 1)
+        inner, solid = box(0.8, 1.2, False, 9)
+        self.write("room.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n")
+        scene = self.write("room.obj", "mtllib room.mtl\n" + vertices + inner + "usemtl lamp\n" + faces[3] +
+                           "usemtl wall\n" + "".join(faces[:3] + faces[4:] + solid))
+        rows = self.probe(scene, "1,1,1,0,1,0\n1,0.4,1,0,1,0\n", "--patches", 300,
+                          "--json", self.folder / "report.json")
+        self.assertTrue(all(math.isnan(value) for value in rows[0][6:]))
+        self.assertGreater(rows[1][6], 0)
+        self.assertGreater(rows[1][9], 0)
+        probes = read_json(self.folder / "report.json")["probes"]
+        self.assertEqual(probes[0]["irradiance"], [None, None, None])
+        self.assert_close(probes[1]["irradiance"][0], rows[1][6], 1e-8)
+        self.assertEqual([probe["on_surface"] for probe in probes], [False, False])
 
 
 class TheTable(ProbeTest):
