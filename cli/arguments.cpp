@@ -49,7 +49,7 @@ void addMeshArguments(CLI::App& command, TransportArguments& a, const std::strin
         ->group("Mesh");
     command
         .add_flag("--whole-contacts", a.wholeContacts,
-                  "Do not divide surfaces along the outlines of what stands on them")
+                  "Do not divide surfaces along the outlines of what stands on them or hovers over them")
         ->group("Mesh");
 }
 

@@ -5,6 +5,7 @@
 #include "meshing/contacts.h"
 #include "meshing/divide_polygon.h"
 #include "meshing/edge_division.h"
+#include "meshing/near_contacts.h"
 #include "meshing/patch_mesh_builder.h"
 #include "meshing/patch_surface.h"
 #include "meshing/prepare.h"
@@ -29,18 +30,21 @@ constexpr double kMoreThanExpected = 1.3; ///< room that is not used stays with 
 constexpr double kDividedAtOnce = 65536;  ///< patches, so that they are hardly in memory twice
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
-/// What stands on a polygon, or null.
-const PlanarContact* contactOf(const std::vector<PlanarContact>& contacts, std::uint32_t polygon) {
+/// What stands on a polygon or hovers over it, or null.
+template <class Contact>
+const Contact* contactOf(const std::vector<Contact>& contacts, std::uint32_t polygon) {
     const auto it = std::lower_bound(contacts.begin(), contacts.end(), polygon,
-                                     [](const PlanarContact& contact, std::uint32_t p) { return contact.polygon < p; });
+                                     [](const Contact& contact, std::uint32_t p) { return contact.polygon < p; });
     return it != contacts.end() && it->polygon == polygon ? &*it : nullptr;
 }
 
 /// A scene to be divided, as finely as it takes.
 class SceneDivision {
 public:
-    SceneDivision(const Scene& scene, bool splitContacts, Progress& progress, MeshReport& report)
-        : scene_(scene), index_(scene.positions), progress_(progress), report_(report) {
+    /// `near` are the near contacts; their vertices are in the scene.
+    SceneDivision(const Scene& scene, bool splitContacts, const std::vector<NearContact>& near, Progress& progress,
+                  MeshReport& report)
+        : scene_(scene), index_(scene.positions), near_(near), progress_(progress), report_(report) {
         if (splitContacts) contacts_ = findContacts(scene, index_);
     }
 
@@ -75,10 +79,12 @@ private:
         divided_.resize(count);
         parallelFor(count, 1, [&](std::size_t begin, std::size_t end, int) {
             progress_.throwIfCancelled();
-            for (std::size_t k = begin; k < end; ++k)
-                divided_[k] = dividePolygon(scene_, scene_.polygons[first + k], edges,
-                                            contactOf(contacts_, static_cast<std::uint32_t>(first + k)),
-                                            report_.patchLength, positions);
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto polygon = static_cast<std::uint32_t>(first + k);
+                const NearContact* near = contactOf(near_, polygon);
+                divided_[k] = dividePolygon(scene_, scene_.polygons[polygon], edges, contactOf(contacts_, polygon),
+                                            near != nullptr ? &near->lines : nullptr, report_.patchLength, positions);
+            }
         });
         const std::size_t known = positions.size();
         for (DividedPolygon& polygon : divided_) builder_->add(std::exchange(polygon, {}), known);
@@ -87,6 +93,7 @@ private:
     const Scene& scene_;
     VertexIndex index_;
     std::vector<PlanarContact> contacts_; ///< in the polygons' order
+    const std::vector<NearContact>& near_;
     Progress& progress_;
     MeshReport& report_;
     std::optional<PatchMeshBuilder> builder_;
@@ -124,46 +131,76 @@ std::size_t defaultPatches(const Scene& scene, double refinement) {
 
 namespace {
 
+/// What the options ask for.
+struct Aim {
+    double patches;  ///< about so many
+    double length;   ///< of as many equal squares, or as given, metres
+    double polygons; ///< how many there are at least
+
+    Aim(const Scene& scene, const MeshOptions& options) : polygons(static_cast<double>(litPolygons(scene))) {
+        if (options.patchLength) {
+            length = *options.patchLength;
+            patches = totalArea(scene) / (length * length);
+            if (patches > kMostPatches)
+                throw UsageError(fmt::format("patch length {} m: would make about {:.0f} patches, allowed are {:.0f}",
+                                             length, patches, kMostPatches));
+        } else {
+            patches = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
+            if (patches > kMostPatches)
+                throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", patches, kMostPatches));
+            length = std::sqrt(totalArea(scene) / patches);
+        }
+    }
+
+    /// How many patches may come of what hovers: a quarter, but of what the polygons leave no more than a half.
+    double forNearContacts() const {
+        return std::min(0.25 * patches, 0.5 * std::max(patches - polygons, 0.2 * patches));
+    }
+};
+
+/// Divides until the number is about right.
+void divideToNumber(SceneDivision& division, const Aim& aim) {
+    // If small polygons use up the number, or almost, the large ones must not stay whole all the same.
+    const double longest = kLongestOverEqual * aim.length;
+    if (aim.polygons >= aim.patches) {
+        division.divide(longest, aim.polygons);
+        return;
+    }
+    // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
+    double length = aim.length;
+    division.divide(length, aim.patches);
+    for (int attempt = 0; attempt < 5; ++attempt) {
+        const auto found = static_cast<double>(division.patchCount());
+        if (std::abs(found / aim.patches - 1.0) < 0.03) break;
+        // With few polygons their number is no bound: two patches of a quad are not two triangles.
+        const double base = aim.polygons < 0.5 * aim.patches ? 0.0 : aim.polygons;
+        const double next = std::min(longest, length * std::sqrt(std::max(found - base, 1.0) / (aim.patches - base)));
+        if (next == length) break;
+        length = next;
+        division.divide(length, aim.patches);
+    }
+}
+
 /// The patches, with the material's constants for what is on them.
 PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport& counts) {
     if (options.patchLength && !(*options.patchLength > 0.0))
         throw UsageError(fmt::format("patch length: found {}, allowed is a length above 0", *options.patchLength));
     if (!options.patchLength && options.patches == std::size_t{0}) return keepPolygons(scene, progress, counts);
 
-    SceneDivision division(scene, options.splitContacts, progress, counts);
-    if (options.patchLength) {
-        const double predicted = totalArea(scene) / (*options.patchLength * *options.patchLength);
-        if (predicted > kMostPatches)
-            throw UsageError(fmt::format("patch length {} m: would make about {:.0f} patches, allowed are {:.0f}",
-                                         *options.patchLength, predicted, kMostPatches));
-        division.divide(*options.patchLength, predicted);
-        return division.finish();
+    const Aim aim(scene, options);
+    NearContacts near;
+    if (options.splitContacts) near = findNearContacts(scene, aim.length, aim.forNearContacts());
+    std::optional<Scene> withVertices;
+    if (!near.vertices.empty()) {
+        withVertices = scene;
+        withVertices->positions.insert(withVertices->positions.end(), near.vertices.begin(), near.vertices.end());
     }
-    const auto wanted = static_cast<double>(options.patches.value_or(defaultPatches(scene, options.refinement)));
-    if (wanted > kMostPatches)
-        throw UsageError(fmt::format("patches: found {:.0f}, allowed are {:.0f}", wanted, kMostPatches));
-    const auto polygons = static_cast<double>(litPolygons(scene));
-    // If small polygons use up the number, or almost, the large ones must not stay whole all the same.
-    const double equal = std::sqrt(totalArea(scene) / wanted);
-    const double longest = kLongestOverEqual * equal;
-    if (polygons >= wanted) {
-        division.divide(longest, polygons);
-        return division.finish();
-    }
-
-    // Small polygons stay whole; what is refined beyond them grows about as 1 / length².
-    double length = equal;
-    division.divide(length, wanted);
-    for (int attempt = 0; attempt < 5; ++attempt) {
-        const auto found = static_cast<double>(division.patchCount());
-        if (std::abs(found / wanted - 1.0) < 0.03) break;
-        // With few polygons their number is no bound: two patches of a quad are not two triangles.
-        const double base = polygons < 0.5 * wanted ? 0.0 : polygons;
-        const double next = std::min(longest, length * std::sqrt(std::max(found - base, 1.0) / (wanted - base)));
-        if (next == length) break;
-        length = next;
-        division.divide(length, wanted);
-    }
+    SceneDivision division(withVertices ? *withVertices : scene, options.splitContacts, near.contacts, progress,
+                           counts);
+    if (options.patchLength)
+        division.divide(aim.length, aim.patches);
+    else
+        divideToNumber(division, aim);
     return division.finish();
 }
 

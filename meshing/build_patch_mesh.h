@@ -14,7 +14,7 @@ struct MeshOptions {
     std::optional<std::size_t> patches; //!< about so many, more if polygons are many: none longer than twice
                                         //!< equal squares; 0 keeps the input's; none: see defaultPatches
     double refinement = 1.0;            //!< factor on what defaultPatches adds to the polygons; > 0
-    bool splitContacts = true;          //!< divide a polygon along the edges of others that stand on it
+    bool splitContacts = true; //!< divide a polygon along the edges of others that stand on it or hover over it
 };
 
 /// A number of patches for a first look: 5000 more than the scene has polygons, or a quarter more if it has many; these

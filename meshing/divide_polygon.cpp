@@ -14,7 +14,7 @@ struct DividedBorder {
     bool whole = true; ///< no vertex but the corners
 
     DividedBorder(const Scene& scene, const Polygon& polygon, const EdgeDivision& division,
-                  const PlanarContact* contact) {
+                  const PlanarContact* contact, const FaceLines* lines) {
         for (int k = 0; k < polygon.size(); ++k) {
             auto& side = sides[static_cast<std::size_t>(k)];
             side = division.side(polygon, k);
@@ -22,7 +22,8 @@ struct DividedBorder {
             whole = whole && side.vertices.size() == 2;
         }
         if (contact != nullptr) outline.contacts = contactLines(*contact, scene, division);
-        whole = whole && outline.contacts.empty();
+        outline.lines = lines;
+        whole = whole && isEmpty();
     }
 
     /// Whether a quad can be a grid: nothing stands on it, and opposite sides are divided alike.
@@ -31,8 +32,11 @@ struct DividedBorder {
             return sides[k].segments == 1 && sides[k + 2].segments == 1 &&
                    sides[k].vertices.size() == sides[k + 2].vertices.size();
         };
-        return outline.contacts.empty() && alike(0) && alike(1);
+        return isEmpty() && alike(0) && alike(1);
     }
+
+private:
+    bool isEmpty() const { return outline.contacts.empty() && outline.lines == nullptr; }
 };
 
 } // namespace
@@ -49,9 +53,10 @@ DividedPolygon keptWhole(const Scene& scene, const Polygon& polygon) {
 }
 
 DividedPolygon dividePolygon(const Scene& scene, const Polygon& polygon, const EdgeDivision& division,
-                             const PlanarContact* contact, double length, std::span<const glm::vec3> positions) {
+                             const PlanarContact* contact, const FaceLines* lines, double length,
+                             std::span<const glm::vec3> positions) {
     DividedPolygon result;
-    DividedBorder border(scene, polygon, division, contact);
+    DividedBorder border(scene, polygon, division, contact, lines);
     FaceOutline& outline = border.outline;
     if (isOccluder(scene, polygon)) {
         result.border = std::move(outline.border);
@@ -68,6 +73,10 @@ DividedPolygon dividePolygon(const Scene& scene, const Polygon& polygon, const E
     }
     outline.frame = planeFrame(scene, polygon);
     auto faces = triangulateFace(outline, length, positions, result.added);
+    if (!faces && outline.lines != nullptr) {
+        outline.lines = nullptr;
+        faces = triangulateFace(outline, length, positions, result.added);
+    }
     const bool hasContacts = !outline.contacts.empty();
     const bool contactsIgnored = hasContacts && !faces;
     if (contactsIgnored) {

@@ -25,9 +25,10 @@ struct DividedPolygon {
 };
 
 /// Divides a polygon into patches about `length` metres long, which end at its divided edges; `contact`, if not null, tells
-/// what stands on it. `positions` are the vertices of the scene and of the divided edges.
+/// what stands on it, and `lines` which other lines no patch shall cross. `positions` are the vertices of the scene and of the divided edges.
 DividedPolygon dividePolygon(const Scene& scene, const Polygon& polygon, const EdgeDivision& division,
-                             const PlanarContact* contact, double length, std::span<const glm::vec3> positions);
+                             const PlanarContact* contact, const FaceLines* lines, double length,
+                             std::span<const glm::vec3> positions);
 
 /// The polygon as it is, as its only patch; or, if it only blocks light, none.
 DividedPolygon keptWhole(const Scene& scene, const Polygon& polygon);

@@ -13,7 +13,8 @@ namespace lambert {
 
 namespace {
 
-constexpr double kClearance = 0.5; ///< lattice points keep this far from lines, in spacings
+constexpr double kClearance = 0.5;     ///< lattice points keep this far from lines, in spacings
+constexpr double kShortestPart = 0.25; ///< of a line at its ends, of the others
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
@@ -101,12 +102,45 @@ double signedArea(std::span<const glm::dvec2> loop) {
     return 0.5 * twice;
 }
 
-/// The outline in its plane: border vertices first, then the other ends of contacts.
+/// The outline in its plane: border vertices first, then the other ends of contacts, then points that are no vertices yet.
 struct FlatOutline {
     std::vector<std::uint32_t> vertices;
     std::vector<glm::dvec2> points;
-    std::vector<Line> contacts; ///< indices into the above
+    std::vector<Line> contacts; ///< and other lines; indices into the above
 };
+
+/// Adds lines, divided so that no part is longer than `spacing`; where they follow the same edge, at the same places along it.
+void addLines(const FaceLines& lines, std::size_t borderCount, double spacing, FlatOutline& flat) {
+    std::vector<std::uint32_t> index(lines.points.size(), kNone);
+    const auto border = std::span(flat.vertices).first(borderCount);
+    for (std::size_t i = 0; i < lines.points.size(); ++i) {
+        if (!lines.onBorder[i]) continue;
+        const auto at = std::find(border.begin(), border.end(), lines.vertices[i]);
+        if (at != border.end()) index[i] = static_cast<std::uint32_t>(at - border.begin());
+    }
+    for (const FaceLine& line : lines.lines) {
+        const auto ends = {line.from, line.to};
+        if (std::any_of(ends.begin(), ends.end(), [&](auto i) { return lines.onBorder[i] && index[i] == kNone; }))
+            continue;
+        for (const std::uint32_t i : ends) {
+            if (index[i] != kNone) continue;
+            index[i] = static_cast<std::uint32_t>(flat.points.size());
+            flat.points.push_back(lines.points[i]);
+        }
+        std::uint32_t last = index[line.from];
+        if (last == index[line.to]) continue;
+        const double parts = std::max(1.0, std::ceil(line.edgeLength / spacing - 1e-3));
+        const double direction = line.end > line.start ? 1.0 : -1.0;
+        const double first = direction * line.start * parts, end = direction * line.end * parts;
+        for (double stop = std::ceil(first + kShortestPart); stop < end - kShortestPart; stop += 1.0) {
+            flat.points.push_back(
+                glm::mix(lines.points[line.from], lines.points[line.to], (stop - first) / (end - first)));
+            flat.contacts.push_back({last, static_cast<std::uint32_t>(flat.points.size() - 1)});
+            last = static_cast<std::uint32_t>(flat.points.size() - 1);
+        }
+        flat.contacts.push_back({last, index[line.to]});
+    }
+}
 
 FlatOutline flatten(const FaceOutline& outline, std::span<const glm::vec3> positions) {
     FlatOutline flat;
@@ -174,7 +208,8 @@ std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, 
                                                     std::vector<glm::vec3>& added) {
     FlatOutline flat = flatten(outline, positions);
     const std::size_t borderCount = outline.border.size();
-    const std::size_t lineCount = flat.points.size();
+    const std::size_t known = flat.points.size();
+    if (outline.lines != nullptr) addLines(*outline.lines, borderCount, spacing, flat);
     const std::vector<glm::dvec2> border(flat.points.begin(),
                                          flat.points.begin() + static_cast<std::ptrdiff_t>(borderCount));
     if (std::isfinite(spacing)) {
@@ -195,8 +230,8 @@ std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, 
     std::vector<glm::vec3> at;
     at.reserve(flat.points.size());
     for (const std::uint32_t vertex : flat.vertices) at.push_back(positions[vertex]);
-    for (std::size_t i = lineCount; i < flat.points.size(); ++i) {
-        flat.vertices.push_back(static_cast<std::uint32_t>(positions.size() + i - lineCount));
+    for (std::size_t i = known; i < flat.points.size(); ++i) {
+        flat.vertices.push_back(static_cast<std::uint32_t>(positions.size() + i - known));
         at.push_back(outline.frame.lift(flat.points[i]));
     }
     std::vector<Corners> faces;
@@ -209,7 +244,7 @@ std::optional<std::vector<Corners>> triangulateFace(const FaceOutline& outline, 
     for (Corners& face : faces)
         for (std::uint32_t& vertex : face)
             if (vertex != kNone) vertex = flat.vertices[vertex];
-    added.assign(at.begin() + static_cast<std::ptrdiff_t>(lineCount), at.end());
+    added.assign(at.begin() + static_cast<std::ptrdiff_t>(known), at.end());
     return faces;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshing/contact_strips.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/plane_frame.h"
 #include "scene/scene.h"
@@ -17,6 +18,8 @@ struct FaceOutline {
     PlaneFrame frame;
     std::vector<std::uint32_t> border;                             //!< counter-clockwise, no repetition
     std::vector<std::pair<std::uint32_t, std::uint32_t>> contacts; //!< inside the polygon; no end outside
+    const FaceLines* lines =
+        nullptr; //!< more lines, in the frame; those that end on no vertex of the border are left out
 };
 
 /// Grid of a planar quad: `sides[k]` runs from corner k to corner k + 1, opposite sides have equally many vertices.

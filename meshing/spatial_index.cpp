@@ -75,4 +75,12 @@ void EdgeIndex::nearLater(std::uint32_t index, std::vector<std::uint32_t>& found
     std::sort(found.begin(), found.end());
 }
 
+void EdgeIndex::inBox(const glm::vec3& lower, const glm::vec3& upper, std::vector<std::uint32_t>& found) const {
+    found.clear();
+    const auto take = [&](const BoxEntry& entry) { found.push_back(entry.second); };
+    impl_->tree.query(boost::geometry::index::intersects(Box(point(lower), point(upper))),
+                      boost::make_function_output_iterator(take));
+    std::sort(found.begin(), found.end());
+}
+
 } // namespace lambert

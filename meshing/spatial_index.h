@@ -35,6 +35,8 @@ public:
 
     /// Replaces `found` by the edges near edge `index` that come after it, ascending.
     void nearLater(std::uint32_t index, std::vector<std::uint32_t>& found) const;
+    /// Replaces `found` by the edges whose boxes meet a box, ascending.
+    void inBox(const glm::vec3& lower, const glm::vec3& upper, std::vector<std::uint32_t>& found) const;
 
 private:
     struct Impl;

@@ -1,0 +1,267 @@
+#include "meshing/hovering_edges.h"
+
+#include "core/parallel.h"
+#include "meshing/disjoint_sets.h"
+#include "meshing/edge_crossings.h"
+#include "meshing/pair_triangles.h"
+#include "meshing/plane_frame.h"
+#include "meshing/prepare.h"
+#include "meshing/spatial_index.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kSteep = 0.5; ///< sine of the angle to the polygon from which on an edge or a face is not over it
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The edges of a scene and the polygons at each.
+struct Edges {
+    std::vector<Edge> keys;
+    std::vector<std::uint32_t> first;    ///< #keys + 1, into `polygons`
+    std::vector<std::uint32_t> polygons; ///< at each edge, ascending
+
+    explicit Edges(const Scene& scene) : keys(uniqueEdges(scene)), first(keys.size() + 1, 0) {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> at;
+        for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+            const Polygon& polygon = scene.polygons[i];
+            for (int k = 0; k < polygon.size(); ++k) {
+                const Edge key = edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
+                                         polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]);
+                const auto edge = std::lower_bound(keys.begin(), keys.end(), key) - keys.begin();
+                at.emplace_back(static_cast<std::uint32_t>(edge), i);
+            }
+        }
+        std::sort(at.begin(), at.end());
+        polygons.reserve(at.size());
+        for (const auto& [edge, polygon] : at) {
+            ++first[edge + 1];
+            polygons.push_back(polygon);
+        }
+        for (std::size_t i = 0; i < keys.size(); ++i) first[i + 1] += first[i];
+    }
+    std::span<const std::uint32_t> at(std::uint32_t edge) const {
+        return std::span(polygons).subspan(first[edge], first[edge + 1] - first[edge]);
+    }
+};
+
+glm::dvec3 normalOf(const PlaneFrame& frame) { return glm::cross(frame.axisX, frame.axisY); }
+
+bool emits(const Scene& scene, const Polygon& polygon) {
+    const auto shines = [&](std::uint32_t material) {
+        return material != kNone && scene.materials[material].emittedRadiance != Rgb(0.0F);
+    };
+    return shines(polygon.material) || shines(polygon.backMaterial);
+}
+
+/// Finds what hovers over one side of a polygon.
+class OneSide {
+public:
+    OneSide(const Scene& scene, const Edges& edges, std::uint32_t polygon, bool back, double reach)
+        : scene_(scene),
+          edges_(edges),
+          below_(polygon),
+          frame_(planeFrame(scene, scene.polygons[polygon])),
+          normal_(normalOf(frame_)),
+          reach_(reach),
+          least_(3.0 * static_cast<double>(weldTolerance(scene))) {
+        if (back) normal_ = -normal_;
+        for (int k = 0; k < scene.polygons[polygon].size(); ++k)
+            border_.push_back(frame_.project(corner(scene, scene.polygons[polygon], k)));
+    }
+
+    std::vector<Outline> outlines(std::span<const std::uint32_t> near) const {
+        std::vector<std::pair<std::uint32_t, OutlineEdge>> rims;
+        for (const std::uint32_t edge : near) {
+            const auto part = partWithinReach(edge);
+            if (part && crossesPolygon(*part) && isOpen(edge)) rims.emplace_back(edge, *part);
+        }
+        return grouped(rims);
+    }
+
+private:
+    double height(const glm::vec3& p) const { return glm::dot(glm::dvec3(p) - frame_.origin, normal_); }
+
+    /// Nothing if it is steep over the polygon.
+    std::optional<OutlineEdge> partWithinReach(std::uint32_t edge) const {
+        const glm::dvec3 a(scene_.positions[edges_.keys[edge].first]);
+        const glm::dvec3 b(scene_.positions[edges_.keys[edge].second]);
+        const double from = height(glm::vec3(a)), to = height(glm::vec3(b));
+        if (std::abs(to - from) > kSteep * glm::distance(a, b)) return std::nullopt;
+        double low = 0.0, high = 1.0;
+        const auto keep = [&](double value, double slope) { // where value + t slope > 0
+            if (slope > 0.0)
+                low = std::max(low, -value / slope);
+            else if (slope < 0.0)
+                high = std::min(high, -value / slope);
+            else if (!(value > 0.0))
+                high = low;
+        };
+        keep(from - least_, to - from);
+        keep(reach_ - from, from - to);
+        if (!(low < high)) return std::nullopt;
+        return OutlineEdge{glm::mix(a, b, low), glm::mix(a, b, high), glm::mix(from, to, 0.5 * (low + high))};
+    }
+
+    bool crossesPolygon(const OutlineEdge& edge) const {
+        const glm::dvec2 a = frame_.project(glm::vec3(edge.from)), b = frame_.project(glm::vec3(edge.to));
+        double low = 0.0, high = 1.0;
+        for (std::size_t k = 0; k < border_.size(); ++k) {
+            const glm::dvec2 side = glm::normalize(border_[(k + 1) % border_.size()] - border_[k]);
+            const auto depth = [&](glm::dvec2 p) {
+                return side.x * (p.y - border_[k].y) - side.y * (p.x - border_[k].x) - least_;
+            };
+            const double from = depth(a), slope = depth(b) - from;
+            if (slope > 0.0)
+                low = std::max(low, -from / slope);
+            else if (slope < 0.0)
+                high = std::min(high, -from / slope);
+            else if (from < 0.0)
+                return false;
+        }
+        return low < high;
+    }
+
+    /// Sine of the angle by which a polygon rises from one of its edges, away from the polygon below; and to which side of the
+    /// edge it lies.
+    struct Rise {
+        double sine;
+        bool left;
+    };
+    Rise riseOf(std::uint32_t polygon, const Edge& edge) const {
+        const PlaneFrame frame = planeFrame(scene_, scene_.polygons[polygon]);
+        const glm::dvec3 a(scene_.positions[edge.first]);
+        const glm::dvec3 along = glm::normalize(glm::dvec3(scene_.positions[edge.second]) - a);
+        glm::dvec3 inward = glm::cross(normalOf(frame), along);
+        glm::dvec3 middle(0.0);
+        const int count = scene_.polygons[polygon].size();
+        for (int k = 0; k < count; ++k)
+            middle += glm::dvec3(corner(scene_, scene_.polygons[polygon], k)) / double(count);
+        if (glm::dot(inward, middle - a) < 0.0) inward = -inward;
+        return {glm::dot(inward, normal_), glm::dot(glm::cross(along, inward), normal_) > 0.0};
+    }
+
+    /// Whether light passes below the edge: no surface goes down from it, and what is over the polygon ends there.
+    bool isOpen(std::uint32_t edge) const {
+        bool left = false, right = false;
+        for (const std::uint32_t polygon : edges_.at(edge)) {
+            if (polygon == below_) return false;
+            const Rise rise = riseOf(polygon, edges_.keys[edge]);
+            if (rise.sine < -kSteep) return false;
+            if (rise.sine <= kSteep) (rise.left ? left : right) = true;
+        }
+        return !(left && right);
+    }
+
+    /// Whether a polygon at an edge shows the polygon below a side that is not black.
+    bool faces(std::uint32_t polygon, const Edge& edge) const {
+        if (isOccluder(scene_, scene_.polygons[polygon]) || std::abs(riseOf(polygon, edge).sine) > kSteep) return false;
+        const double turned = glm::dot(normalOf(planeFrame(scene_, scene_.polygons[polygon])), normal_);
+        return turned < 0.0 || scene_.polygons[polygon].backMaterial != kNone;
+    }
+
+    /// The outlines that hang together.
+    std::vector<Outline> grouped(const std::vector<std::pair<std::uint32_t, OutlineEdge>>& rims) const {
+        DisjointSets sets(rims.size());
+        std::map<std::uint32_t, std::uint32_t> firstAt; // vertex → rim
+        for (std::uint32_t i = 0; i < rims.size(); ++i) {
+            const auto& [a, b] = edges_.keys[rims[i].first];
+            for (const std::uint32_t vertex : {a, b}) sets.unite(firstAt.try_emplace(vertex, i).first->second, i);
+        }
+        std::map<std::uint32_t, Outline> byRoot;
+        for (std::uint32_t i = 0; i < rims.size(); ++i) {
+            Outline& outline = byRoot[sets.root(i)];
+            outline.below = below_;
+            outline.edges.push_back(rims[i].second);
+            outline.length += glm::distance(rims[i].second.from, rims[i].second.to);
+            outline.emits = outline.emits || emits(scene_, scene_.polygons[below_]);
+            for (const std::uint32_t polygon : edges_.at(rims[i].first)) {
+                outline.emits = outline.emits || emits(scene_, scene_.polygons[polygon]);
+                if (faces(polygon, edges_.keys[rims[i].first])) outline.hovering.push_back(polygon);
+            }
+        }
+        std::vector<Outline> outlines;
+        for (auto& [root, outline] : byRoot) {
+            std::sort(outline.hovering.begin(), outline.hovering.end());
+            outline.hovering.erase(std::unique(outline.hovering.begin(), outline.hovering.end()),
+                                   outline.hovering.end());
+            outlines.push_back(std::move(outline));
+        }
+        return outlines;
+    }
+
+    const Scene& scene_;
+    const Edges& edges_;
+    std::uint32_t below_;
+    PlaneFrame frame_;
+    glm::dvec3 normal_; ///< of the side
+    double reach_, least_;
+    std::vector<glm::dvec2> border_;
+};
+
+/// Half the polygon's smaller extent across its longest edge, at most `reach`: how near to it things hover that matter.
+double reachOver(const Scene& scene, const Polygon& polygon, double reach) {
+    return std::min(reach, 0.5 * polygonArea(scene, polygon) / lambert::longestEdge(scene, polygon));
+}
+
+} // namespace
+
+HoveringOutlines findHoveringOutlines(const Scene& scene, double reach) {
+    const Edges edges(scene);
+    const EdgeIndex index(scene.positions, edges.keys, 0.0F);
+    const auto touching = 2.0 * static_cast<double>(weldTolerance(scene));
+    std::vector<std::vector<Outline>> outlines(scene.polygons.size());
+    std::vector<std::vector<Edge>> contacts(scene.polygons.size());
+    parallelFor(scene.polygons.size(), 64, [&](std::size_t begin, std::size_t end, int) {
+        std::vector<std::uint32_t> near;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Polygon& polygon = scene.polygons[i];
+            const double own = reachOver(scene, polygon, reach);
+            if (isOccluder(scene, polygon) || own < 0.125 * reach || own < 16.0 * touching) continue;
+            glm::vec3 lower = corner(scene, polygon, 0), upper = lower;
+            for (int k = 1; k < polygon.size(); ++k) {
+                lower = glm::min(lower, corner(scene, polygon, k));
+                upper = glm::max(upper, corner(scene, polygon, k));
+            }
+            index.inBox(lower - static_cast<float>(own), upper + static_cast<float>(own), near);
+            for (const bool back : {false, true}) {
+                if (back && polygon.backMaterial == kNone) continue;
+                auto some = OneSide(scene, edges, static_cast<std::uint32_t>(i), back, own).outlines(near);
+                outlines[i].insert(outlines[i].end(), some.begin(), some.end());
+            }
+            if (outlines[i].empty()) continue;
+            const PlaneFrame frame = planeFrame(scene, polygon);
+            const auto height = [&](std::uint32_t vertex) {
+                return std::abs(glm::dot(glm::dvec3(scene.positions[vertex]) - frame.origin, normalOf(frame)));
+            };
+            for (const std::uint32_t edge : near)
+                if (height(edges.keys[edge].first) <= touching && height(edges.keys[edge].second) <= touching)
+                    contacts[i].push_back(edges.keys[edge]);
+        }
+    });
+    HoveringOutlines result;
+    for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+        if (outlines[i].empty()) continue;
+        std::move(outlines[i].begin(), outlines[i].end(), std::back_inserter(result.outlines));
+        const Polygon& polygon = scene.polygons[i];
+        for (const Edge& edge : contacts[i]) {
+            bool own = false;
+            for (int k = 0; k < polygon.size(); ++k)
+                own = own || edge == edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
+                                             polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]);
+            if (!own) result.touching[i].push_back(edge);
+        }
+    }
+    return result;
+}
+
+} // namespace lambert

@@ -1,0 +1,153 @@
+#include "meshing/near_contacts.h"
+
+#include "core/parallel.h"
+#include "meshing/hovering_edges.h"
+#include "meshing/plane_frame.h"
+#include "meshing/prepare.h"
+#include "meshing/weld.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+namespace lambert {
+
+namespace {
+
+constexpr double kWeld = 4.0; ///< in the tolerance of the scene's vertices: points of lines keep more than that apart
+
+/// Patches along an outline, on both sides of it.
+double costOf(const Outline& outline, const StripOptions& options, bool strips) {
+    double cost = 0.0;
+    for (const OutlineEdge& edge : outline.edges) {
+        const double along = glm::distance(edge.from, edge.to) / options.length + 1.0;
+        const int rows = strips ? 2 * stripLevels(edge.gap, options) + 1 : 1;
+        cost += along * rows * (outline.hovering.empty() ? 1.0 : 2.0);
+    }
+    return cost;
+}
+
+struct Chosen {
+    const Outline* outline;
+    bool strips;
+};
+
+/// Which outlines are followed, and how.
+std::vector<Chosen> choose(const std::vector<Outline>& outlines, const StripOptions& options, double budget) {
+    std::vector<std::size_t> order(outlines.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::tuple(!outlines[a].emits, -outlines[a].length) <
+               std::tuple(!outlines[b].emits, -outlines[b].length);
+    });
+    std::vector<Chosen> chosen;
+    std::vector<bool> known(outlines.size(), false);
+    for (const bool strips : {true, false}) {
+        for (const std::size_t i : order) {
+            const double cost = known[i] ? 0.0 : costOf(outlines[i], options, strips);
+            if (known[i] || cost > budget) continue;
+            budget -= cost;
+            known[i] = true;
+            chosen.push_back({&outlines[i], strips});
+        }
+    }
+    return chosen;
+}
+
+/// The edges that matter for a polygon, in its plane.
+std::vector<HoveringEdge> edgesInPlane(const PlaneFrame& frame, std::span<const glm::dvec2> border,
+                                       const std::vector<Chosen>& chosen, double length) {
+    glm::dvec2 lower = border[0], upper = border[0];
+    for (const glm::dvec2& p : border) {
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+    }
+    std::vector<HoveringEdge> edges;
+    for (const auto& [outline, strips] : chosen) {
+        for (const OutlineEdge& edge : outline->edges) {
+            const HoveringEdge flat{frame.project(glm::vec3(edge.from)), frame.project(glm::vec3(edge.to)), edge.gap,
+                                    strips};
+            const glm::dvec2 first = glm::min(flat.from, flat.to), last = glm::max(flat.from, flat.to);
+            if (first.x > upper.x + length || last.x < lower.x - length || first.y > upper.y + length ||
+                last.y < lower.y - length)
+                continue;
+            const auto same = std::find_if(edges.begin(), edges.end(), [&](const HoveringEdge& known) {
+                return (known.from == flat.from && known.to == flat.to) ||
+                       (known.from == flat.to && known.to == flat.from);
+            });
+            if (same == edges.end()) {
+                edges.push_back(flat);
+            } else {
+                same->gap = std::min(same->gap, flat.gap);
+                same->strips = same->strips || flat.strips;
+            }
+        }
+    }
+    return edges;
+}
+
+/// Numbers the points on borders: vertices of the scene where they are near enough, new ones elsewhere.
+void addVertices(const Scene& scene, double tolerance, NearContacts& result) {
+    std::vector<glm::vec3> points = scene.positions;
+    for (NearContact& contact : result.contacts) {
+        const PlaneFrame frame = planeFrame(scene, scene.polygons[contact.polygon]);
+        for (std::size_t i = 0; i < contact.lines.points.size(); ++i)
+            if (contact.lines.onBorder[i]) points.push_back(frame.lift(contact.lines.points[i]));
+    }
+    const std::vector<std::uint32_t> representative = weldPositions(points, static_cast<float>(tolerance));
+    const std::size_t known = scene.positions.size();
+    std::vector<std::uint32_t> index(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i < known || representative[i] != i) {
+            index[i] = i < known ? static_cast<std::uint32_t>(i) : index[representative[i]];
+            continue;
+        }
+        index[i] = static_cast<std::uint32_t>(known + result.vertices.size());
+        result.vertices.push_back(points[i]);
+    }
+    std::size_t next = known;
+    for (NearContact& contact : result.contacts)
+        for (std::size_t i = 0; i < contact.lines.points.size(); ++i)
+            if (contact.lines.onBorder[i]) contact.lines.vertices[i] = index[next++];
+}
+
+} // namespace
+
+NearContacts findNearContacts(const Scene& scene, double length, double budget) {
+    NearContacts result;
+    const double tolerance = kWeld * static_cast<double>(weldTolerance(scene));
+    const StripOptions options{length, tolerance};
+    const HoveringOutlines found = findHoveringOutlines(scene, length);
+    std::map<std::uint32_t, std::vector<Chosen>> byPolygon;
+    for (const Chosen& chosen : choose(found.outlines, options, budget)) {
+        byPolygon[chosen.outline->below].push_back(chosen);
+        for (const std::uint32_t polygon : chosen.outline->hovering) byPolygon[polygon].push_back(chosen);
+    }
+    for (const auto& [polygon, chosen] : byPolygon) result.contacts.push_back({polygon, {}});
+    parallelFor(result.contacts.size(), 1, [&](std::size_t begin, std::size_t end, int) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Polygon& polygon = scene.polygons[result.contacts[i].polygon];
+            const PlaneFrame frame = planeFrame(scene, polygon);
+            std::vector<glm::dvec2> border;
+            for (int k = 0; k < polygon.size(); ++k) border.push_back(frame.project(corner(scene, polygon, k)));
+            std::vector<std::pair<glm::dvec2, glm::dvec2>> touching;
+            if (const auto it = found.touching.find(result.contacts[i].polygon); it != found.touching.end())
+                for (const auto& [a, b] : it->second)
+                    touching.emplace_back(frame.project(scene.positions[a]), frame.project(scene.positions[b]));
+            result.contacts[i].lines =
+                contactStrips(border, edgesInPlane(frame, border, byPolygon.at(result.contacts[i].polygon), length),
+                              touching, options);
+        }
+    });
+    std::erase_if(result.contacts, [](const NearContact& contact) { return contact.lines.lines.empty(); });
+    addVertices(scene, tolerance, result);
+    return result;
+}
+
+} // namespace lambert
