@@ -25,9 +25,10 @@ namespace lambert {
 namespace {
 
 constexpr double kMostPatches = 2e8;
-constexpr double kLongestOverEqual = 2.0; ///< of a patch's length to that of as many equal squares
-constexpr double kMoreThanExpected = 1.3; ///< room that is not used stays with the system
-constexpr double kDividedAtOnce = 65536;  ///< patches, so that they are hardly in memory twice
+constexpr double kLongestOverEqual = 2.0;    ///< of a patch's length to that of as many equal squares
+constexpr double kMoreThanExpected = 1.3;    ///< room that is not used stays with the system
+constexpr double kDividedAtOnce = 65536;     ///< patches, so that they are hardly in memory twice
+constexpr double kMostForNearContacts = 2e4; ///< patches; the time to find their lines grows with the square
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
 
 /// What stands on a polygon or hovers over it, or null.
@@ -154,7 +155,7 @@ struct Aim {
 
     /// How many patches may come of what hovers: a quarter, but of what the polygons leave no more than a half.
     double forNearContacts() const {
-        return std::min(0.25 * patches, 0.5 * std::max(patches - polygons, 0.2 * patches));
+        return std::min({kMostForNearContacts, 0.25 * patches, 0.5 * std::max(patches - polygons, 0.2 * patches)});
     }
 };
 

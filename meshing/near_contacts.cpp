@@ -38,23 +38,30 @@ struct Chosen {
     bool strips;
 };
 
-/// Which outlines are followed, and how.
+/// Which outlines are followed, and how: all of emitters before any strips, and these before what does not emit; the long ones
+/// first, as along them most patches would lie across.
 std::vector<Chosen> choose(const std::vector<Outline>& outlines, const StripOptions& options, double budget) {
     std::vector<std::size_t> order(outlines.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::tuple(!outlines[a].emits, -outlines[a].length) <
-               std::tuple(!outlines[b].emits, -outlines[b].length);
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return outlines[a].length > outlines[b].length; });
+    std::vector<std::size_t> place(outlines.size(), outlines.size()); // in `chosen`
     std::vector<Chosen> chosen;
-    std::vector<bool> known(outlines.size(), false);
-    for (const bool strips : {true, false}) {
-        for (const std::size_t i : order) {
-            const double cost = known[i] ? 0.0 : costOf(outlines[i], options, strips);
-            if (known[i] || cost > budget) continue;
-            budget -= cost;
-            known[i] = true;
-            chosen.push_back({&outlines[i], strips});
+    for (const bool emits : {true, false}) {
+        for (const bool strips : {false, true}) {
+            for (const std::size_t i : order) {
+                if (outlines[i].emits != emits || (strips && place[i] == outlines.size())) continue;
+                const double alone = costOf(outlines[i], options, false);
+                const double cost = strips ? costOf(outlines[i], options, true) - alone : alone;
+                if (cost > budget) continue;
+                budget -= cost;
+                if (strips) {
+                    chosen[place[i]].strips = true;
+                } else {
+                    place[i] = chosen.size();
+                    chosen.push_back({&outlines[i], false});
+                }
+            }
         }
     }
     return chosen;

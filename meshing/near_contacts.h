@@ -23,7 +23,7 @@ struct NearContacts {
 /// wall, a rug, the legs of a table. Where light is shut up between two faces, a patch that reaches beyond the outline of one
 /// would carry it out, and so would a patch as long as the gap is narrow times many at its rim.
 ///
-/// About `budget` patches more result at most: emitters come first, then long outlines, and what is left is not followed.
+/// About `budget` patches more result at most: emitters come first, then long outlines, with strips if there are patches left.
 NearContacts findNearContacts(const Scene& scene, double length, double budget);
 
 } // namespace lambert
