@@ -154,7 +154,7 @@ void solveStored(const BakeOptions& options, const Task& task, BakedScene& resul
     const std::string identity = fmt::format("lambert {}, form factors {}", options.formFactors.version,
                                              kept ? checksumOf(matrix) : std::string());
     solveFor(options, task, rows, identity, result, progress);
-    result.energyCheck = checkEnergy(result, options, deficit);
+    result.energyCheck = checkEnergy(result, options, deficit, lossOfEmitters(result, matrix));
     result.seconds.solve = watch.lap();
 }
 

@@ -19,8 +19,11 @@ double lightThatCameIn(const EnergyBalance& energy) { return sumOf(energy.emitte
 /// What is lost of the light of each material.
 std::vector<double> lostByMaterial(const BakedScene& baked, std::span<const double> deficit) {
     std::vector<double> lost(baked.scene->materials.size(), 0.0);
-    for (std::size_t j = 0; j < deficit.size(); ++j)
-        lost[baked.mesh.material[j]] += deficit[j] * sumOf(baked.solution.radiosity[j]);
+    const bool emittersApart = !baked.emittersIrradiance.empty();
+    for (std::size_t j = 0; j < deficit.size(); ++j) {
+        const RgbSum emitted(emittersApart ? baked.mesh.emittedRadiosity[j] : Rgb(0.0F));
+        lost[baked.mesh.material[j]] += deficit[j] * sumOf(baked.solution.radiosity[j] - emitted);
+    }
     return lost;
 }
 
@@ -48,14 +51,24 @@ std::string lossText(const BakedScene& baked, bool repaired) {
 
 } // namespace
 
-EnergyCheck checkEnergy(const BakedScene& baked, const BakeOptions& options, std::span<const double> deficit) {
+double lossOfEmitters(const BakedScene& baked, const FormFactorMatrix& matrix) {
+    double lost = 0.0;
+    for (std::size_t i = 0; i < baked.emittersIrradiance.size(); ++i)
+        lost += static_cast<double>(baked.mesh.area[i]) *
+                (sumOf(RgbSum(baked.mesh.emittedRadiosity[i])) * (1.0 - matrix.back(i) - matrix.out(i)) -
+                 sumOf(baked.emittersIrradiance[i]));
+    return lost;
+}
+
+EnergyCheck checkEnergy(const BakedScene& baked, const BakeOptions& options, std::span<const double> deficit,
+                        double lostByEmitters) {
     const EnergyBalance& energy = baked.solution.energy;
     const double in = lightThatCameIn(energy);
     EnergyCheck check;
     if (!(in > 0.0)) return check;
     if (!deficit.empty()) {
         const std::vector<double> lost = lostByMaterial(baked, deficit);
-        double sum = 0.0;
+        double sum = lostByEmitters;
         for (const double l : lost) sum += l;
         check.beforeRepair = check.judged = sum / in;
         const auto most = sum > 0.0 ? std::ranges::max_element(lost) : std::ranges::min_element(lost);

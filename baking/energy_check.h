@@ -1,5 +1,7 @@
 #pragma once
 
+#include "formfactors/form_factor_matrix.h"
+
 #include <optional>
 #include <span>
 #include <string>
@@ -29,8 +31,14 @@ struct EnergyCheck {
     bool missed() const { return judged > kImbalanceMissed || judged < -kImbalanceMissed; }
 };
 
+/// Σ A (B_e (1 − F_back − F_out) − E of emitters), where the light of emitters was found apart from the form factors: what they lack
+/// of each other, over the channels; else 0.
+double lossOfEmitters(const BakedScene& baked, const FormFactorMatrix& matrix);
+
 /// Judges a scene that is solved. `deficit`: columnDeficit of the form factors as they were computed; empty without a matrix.
-EnergyCheck checkEnergy(const BakedScene& baked, const BakeOptions& options, std::span<const double> deficit);
+/// `lostByEmitters`: lossOfEmitters of the same.
+EnergyCheck checkEnergy(const BakedScene& baked, const BakeOptions& options, std::span<const double> deficit,
+                        double lostByEmitters = 0.0);
 
 /// What to tell the user, each in one line: the likely cause and the way out; none if all is well.
 std::vector<std::string> energyWarnings(const BakedScene& baked, const BakeOptions& options);
