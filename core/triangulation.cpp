@@ -174,4 +174,20 @@ std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::s
     return triangles;
 }
 
+std::optional<std::vector<std::array<std::uint32_t, 3>>>
+triangulateLines(std::span<const glm::dvec2> points, std::span<const std::array<std::uint32_t, 2>> lines) {
+    Triangulation triangulation;
+    const auto vertices = insertPoints(triangulation, points, 0);
+    if (!vertices || triangulation.dimension() < 2) return std::nullopt;
+    try {
+        for (const auto& [a, b] : lines) triangulation.insert_constraint((*vertices)[a], (*vertices)[b]);
+    } catch (const Triangulation::Intersection_of_constraints_exception&) {
+        return std::nullopt;
+    }
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    triangles.reserve(triangulation.number_of_faces());
+    for (const Face face : triangulation.finite_face_handles()) append(face, triangles);
+    return triangles;
+}
+
 } // namespace lambert

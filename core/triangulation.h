@@ -37,4 +37,11 @@ triangulatePolygon(std::span<const glm::dvec2> points, std::size_t borderCount,
 std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulateLoops(std::span<const glm::dvec2> points,
                                                                           std::span<const std::size_t> loopSizes);
 
+/// Constrained Delaunay triangulation of the convex hull of points, in which every line (a pair of point indices) is an edge, or a
+/// chain of edges where it passes through other points.
+///
+/// Returns counter-clockwise triangles of point indices, or nothing if lines cross, two points coincide or all lie on a line.
+std::optional<std::vector<std::array<std::uint32_t, 3>>>
+triangulateLines(std::span<const glm::dvec2> points, std::span<const std::array<std::uint32_t, 2>> lines);
+
 } // namespace lambert

@@ -1,52 +1,22 @@
 #include "meshing/prepare.h"
 
+#include "meshing/coplanar_cover.h"
 #include "meshing/edge_crossings.h"
 #include "meshing/join_triangles.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/weld.h"
+#include "meshing/weld_polygon.h"
 #include "scene/surface.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <tuple>
 
 namespace lambert {
 
 namespace {
-
-/// Whether a polygon is no higher over its longest edge than `tolerance`: its vertices lie on its own edges.
-bool isNeedle(const Scene& scene, const Polygon& polygon, float tolerance) {
-    const double height = (polygon.isQuad() ? 1.0 : 2.0) * polygonArea(scene, polygon) / longestEdge(scene, polygon);
-    return !(height > static_cast<double>(tolerance));
-}
-
-/// A polygon on welded vertices.
-struct WeldedPolygon {
-    Polygon polygon;
-    std::array<std::size_t, 4> corners{0, 1, 2, 3}; //!< which of the original's are left
-};
-
-/// The polygon without repeated corners; nothing if less than a triangle is left.
-std::optional<WeldedPolygon> weldPolygon(const Polygon& polygon, const std::vector<std::uint32_t>& representative,
-                                         const Scene& scene, float tolerance) {
-    WeldedPolygon welded{polygon};
-    auto& vertices = welded.polygon.vertices;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size()); ++k) {
-        const std::uint32_t vertex = representative[polygon.vertices[k]];
-        const auto end = vertices.begin() + static_cast<std::ptrdiff_t>(count);
-        if (std::find(vertices.begin(), end, vertex) != end) continue;
-        vertices[count] = vertex;
-        welded.corners[count++] = k;
-    }
-    if (count < 3) return std::nullopt;
-    if (count == 3) vertices[3] = kNone;
-    if (isNeedle(scene, welded.polygon, tolerance)) return std::nullopt;
-    return welded;
-}
 
 /// What the material makes use of: coordinates of textures it has not are no reason to keep triangles apart.
 SurfaceCorners usedPart(SurfaceCorners surface, const Material& material) {
@@ -110,6 +80,16 @@ Corners coincidenceKey(const Polygon& polygon, bool& reversed) {
     return key;
 }
 
+/// Whether two polygons on the same vertices are merged at once. Others are decided with what else lies in their plane, see
+/// coverCoplanar.
+bool mergeAtOnce(const Scene& scene, const Polygon& kept, const Polygon& other, bool reversed) {
+    const auto yields = [&](const Polygon& polygon) { return isOccluder(scene, polygon) || hasHoles(scene, polygon); };
+    if (yields(kept) || yields(other)) return true;
+    if (!reversed) return kept.material == other.material && kept.backMaterial == other.backMaterial;
+    if (kept.backMaterial == kNone) return other.backMaterial == kNone;
+    return kept.backMaterial == other.material && kept.material == other.backMaterial;
+}
+
 /// Merges polygons on the same vertices into the first of them; into the first without holes, if there is one: light that
 /// passes the others must meet it.
 void mergeCoincident(Scene& scene, PrepareReport& counts) {
@@ -133,9 +113,10 @@ void mergeCoincident(Scene& scene, PrepareReport& counts) {
         Polygon& kept = scene.polygons[entries[begin].polygon];
         for (end = begin + 1; end < entries.size() && entries[end].key == entries[begin].key; ++end) {
             const Polygon& other = scene.polygons[entries[end].polygon];
+            const bool reversed = entries[end].reversed != entries[begin].reversed;
+            if (!mergeAtOnce(scene, kept, other, reversed)) continue;
             dropped[entries[end].polygon] = true;
-            if (entries[end].occluder || entries[end].reversed == entries[begin].reversed ||
-                kept.backMaterial != kNone) {
+            if (entries[end].occluder || !reversed || kept.backMaterial != kNone) {
                 ++counts.duplicatePolygons;
             } else {
                 kept.backMaterial = other.material;
@@ -186,7 +167,12 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
     // Twice: sheets of triangles can be joined once they are one, sheets of differently cut quads only coincide then.
     if (options.mergeCoincident) mergeCoincident(prepared, counts);
     if (options.joinTriangles) counts.joinedPairs = joinTriangles(prepared);
-    if (options.mergeCoincident) mergeCoincident(prepared, counts);
+    if (options.mergeCoincident) {
+        mergeCoincident(prepared, counts);
+        counts.cover = coverCoplanar(prepared, tolerance);
+    } else {
+        counts.cover = findCoplanarOverlaps(prepared, tolerance);
+    }
     compactPositions(prepared);
     if (options.addCrossings) {
         const std::vector<glm::vec3> crossings = edgeCrossings(prepared, tolerance);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshing/coplanar_cover.h"
 #include "scene/scene.h"
 
 #include <cstddef>
@@ -7,9 +8,11 @@
 namespace lambert {
 
 struct PrepareOptions {
-    bool joinTriangles = true;   //!< coplanar triangle pairs that make a good quad become one polygon
-    bool mergeCoincident = true; //!< polygons with the same vertices become one, with what each shows on its side
-    bool addCrossings = true;    //!< points where edges cross become vertices, see edgeCrossings
+    bool joinTriangles = true; //!< coplanar triangle pairs that make a good quad become one polygon
+    bool mergeCoincident =
+        true;                 //!< polygons with the same vertices become one, with what each shows on its side; where
+                              //!< others overlap in one plane, what is covered is taken away, see coverCoplanar
+    bool addCrossings = true; //!< points where edges cross become vertices, see edgeCrossings
 };
 
 struct PrepareReport {
@@ -20,6 +23,7 @@ struct PrepareReport {
     std::size_t mergedSheets = 0;      //!< back to back with another: became the back of that one
     std::size_t edgeCrossings = 0;     //!< vertices added where edges cross
     std::size_t joinedPairs = 0;       //!< triangle pairs that became quads
+    CoverReport cover;                 //!< what was covered in its plane
 };
 
 /// Lengths below this (metres) are taken for zero when vertices are compared: 1e-6 of the scene's diagonal.

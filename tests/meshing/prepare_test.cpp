@@ -150,9 +150,10 @@ TEST(PrepareScene, PolygonsOnTheSameVerticesBecomeOne) {
     PrepareReport report;
     const Scene prepared = prepareScene(quadScene(quads, materials), {}, &report);
     ASSERT_EQ(prepared.polygons.size(), 1U);
-    EXPECT_EQ(prepared.polygons[0].material, 0U);
+    EXPECT_EQ(prepared.polygons[0].material, 1U) << "the later of another material";
     EXPECT_EQ(prepared.polygons[0].backMaterial, 2U);
-    EXPECT_EQ(report.duplicatePolygons, 1U);
+    EXPECT_EQ(report.duplicatePolygons, 0U);
+    EXPECT_EQ(report.cover.coveredPolygons, 1U);
     EXPECT_EQ(report.mergedSheets, 1U);
     EXPECT_EQ(prepareScene(quadScene(quads, materials), {.mergeCoincident = false}).polygons.size(), 3U);
 }
