@@ -1,6 +1,7 @@
 #include "scene/ray_caster.h"
 
 #include "core/vector_clones.h"
+#include "scene/coplanar_ties.h"
 #include "scene/embree_scene.h"
 
 #include <glm/geometric.hpp>
@@ -112,11 +113,13 @@ struct RayCaster::Impl {
         : scene(source),
           bounds(boundsOf(source)),
           anyOccluders(hasOccluders(source)),
+          ties(source),
           embree(source, {.opaque = nullptr, .withHoles = rejectHoles}) {}
 
     const Scene& scene;
     Bounds bounds;
     bool anyOccluders;
+    CoplanarTies ties;
     EmbreeScene embree;
 
     /// `rays` hold the origins, `packet` the directions.
@@ -130,6 +133,23 @@ struct RayCaster::Impl {
         store(rays, packet);
         storePolygons(rays, embree.triangles().halves, embree.firstTriangle(1), packet);
         if (anyOccluders) turnOccluders(scene, packet);
+    }
+
+    /// Where several polygons lie in the plane that a ray met, finds the one that it sees. `originOf` gives the origin of a lane.
+    template <typename OriginOf>
+    void settleTies(const OriginOf& originOf, RayPacket& packet) const {
+        if (!ties.any()) return;
+        for (int lane = 0; lane < RayPacket::kSize; ++lane) {
+            const PolygonSide side{packet.polygon[lane], packet.facing[lane] > 0.0F};
+            if (side.polygon == kNone || !ties.any(side)) continue;
+            const glm::vec3 direction(packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]);
+            const auto seen = ties.seen(side, originOf(lane), direction);
+            if (!seen) continue;
+            packet.polygon[lane] = seen->polygon;
+            packet.u[lane] = seen->u;
+            packet.v[lane] = seen->v;
+            packet.facing[lane] = std::copysign(packet.facing[lane], seen->front ? -1.0F : 1.0F);
+        }
     }
 };
 
@@ -161,7 +181,11 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
         impl_->embree.firstTriangle(query.hit.geomID) + query.hit.primID, query.hit.u, query.hit.v);
     const bool front =
         glm::dot(ray.direction, normal) < 0.0F && !isOccluder(impl_->scene, impl_->scene.polygons[hit.polygon]);
-    return Hit{hit.polygon, hit.u, hit.v, query.ray.tfar / impl_->embree.scale(), front};
+    const float distance = query.ray.tfar / impl_->embree.scale();
+    if (const PolygonSide side{hit.polygon, !front}; impl_->ties.any() && impl_->ties.any(side))
+        if (const auto seen = impl_->ties.seen(side, ray.origin, ray.direction))
+            return Hit{seen->polygon, seen->u, seen->v, distance, seen->front};
+    return Hit{hit.polygon, hit.u, hit.v, distance, front};
 }
 
 void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
@@ -172,6 +196,7 @@ void RayCaster::closest(const glm::vec3& origin, RayPacket& packet) const {
     std::fill_n(rays.ray.org_y, RayPacket::kSize, scaled.y);
     std::fill_n(rays.ray.org_z, RayPacket::kSize, scaled.z);
     impl_->trace(rays, packet, Coherence::High);
+    impl_->settleTies([&](int) { return origin; }, packet);
 }
 
 void RayCaster::closest(const RayOrigins& origins, RayPacket& packet, Coherence coherence) const {
@@ -183,6 +208,7 @@ void RayCaster::closest(const RayOrigins& origins, RayPacket& packet, Coherence 
         rays.ray.org_z[lane] = scale * origins.z[lane];
     }
     impl_->trace(rays, packet, coherence);
+    impl_->settleTies([&](int lane) { return glm::vec3(origins.x[lane], origins.y[lane], origins.z[lane]); }, packet);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {
