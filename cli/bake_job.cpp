@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/bake_verdict.h"
 #include "cli/light_files.h"
+#include "cli/overlap_text.h"
 #include "cli/scene_files.h"
 #include "cli/terminal_text.h"
 
@@ -186,6 +187,8 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
 
     const BakedScene baked = bakeScene(read.scene, options, progress);
     for (const std::string& warning : baked.warnings) log.warning(warning);
+    if (const std::string overlaps = overlapText(*baked.scene, baked.prepareReport.cover); !overlaps.empty())
+        baked.prepareReport.cover.takenAway ? log.line(overlaps) : log.warning(overlaps);
     log.line(fmt::format("{} patches, {}: {}", baked.mesh.size(), transportText(a, baked), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));

@@ -1,5 +1,6 @@
 #include "cli/bake_report.h"
 
+#include "cli/overlap_text.h"
 #include "core/parallel.h"
 #include "core/process.h"
 #include "core/whole_file.h"
@@ -51,6 +52,9 @@ Json inputJson(const BakeReportInput& in) {
             {"collapsed", in.baked.prepareReport.collapsedPolygons},
             {"duplicates", in.baked.prepareReport.duplicatePolygons},
             {"merged_sheets", in.baked.prepareReport.mergedSheets},
+            {"covered", in.baked.prepareReport.cover.coveredPolygons},
+            {"cut_by_coplanar", in.baked.prepareReport.cover.cutPolygons},
+            {"coplanar_overlaps", overlapsJson(*in.baked.scene, in.baked.prepareReport.cover)},
             {"edge_crossings", in.baked.prepareReport.edgeCrossings},
             {"joined_pairs", in.baked.prepareReport.joinedPairs}};
 }
@@ -160,6 +164,12 @@ std::vector<MaterialLight> materialLight(const BakedScene& baked) {
         light.meanIrradiance += area * baked.solution.irradiance[i];
         light.meanRadiosity += area * baked.solution.radiosity[i];
     }
+    // What others cover in its plane has no patches and receives nothing; but the back of what is two-sided may still show.
+    if (const CoverReport& cover = baked.prepareReport.cover; cover.takenAway)
+        for (const CoplanarOverlap& overlap : cover.overlaps)
+            if (!baked.scene->materials[overlap.lowerMaterial].twoSided ||
+                overlap.lowerMaterial == overlap.upperMaterial)
+                lights[overlap.lowerMaterial].area += overlap.area;
     std::vector<MaterialLight> used;
     for (std::size_t m = 0; m < lights.size(); ++m) {
         if (!(lights[m].area > 0.0)) continue;

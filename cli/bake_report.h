@@ -11,7 +11,7 @@
 namespace lambert {
 
 /// Area-weighted means over one material. A face counts once, whatever its number of sides; the irradiance of a
-/// two-sided face is the flux on both sides divided by that area.
+/// two-sided face is the flux on both sides divided by that area. What is covered by others in its plane counts, and receives nothing.
 struct MaterialLight {
     std::string name;
     double area = 0.0; //!< m²

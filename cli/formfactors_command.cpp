@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/formfactors_report.h"
 #include "cli/interrupt.h"
+#include "cli/overlap_text.h"
 #include "cli/points_file.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
@@ -118,6 +119,13 @@ void readAndMesh(Run& run) {
     logReport(run.a.run, run.read.report);
     run.warnings = run.read.report.warnings;
     run.scene = meshScene(run.read.scene, meshOptions(run.a.transport), run.progress);
+    const CoverReport& cover = run.scene.prepareReport.cover;
+    if (const std::string overlaps = overlapText(*run.scene.scene, cover); !overlaps.empty()) {
+        if (cover.takenAway)
+            logLine(run.a.run, oneLine(overlaps));
+        else
+            run.warn(overlaps);
+    }
     run.seconds["mesh"] = watch.lap();
 }
 

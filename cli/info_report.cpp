@@ -1,6 +1,7 @@
 #include "cli/info_report.h"
 
 #include "cli/bake_report.h"
+#include "cli/overlap_text.h"
 #include "cli/terminal_text.h"
 
 #include <fmt/format.h>
@@ -89,6 +90,8 @@ Json inputJson(const ReadReport& report, const SceneFacts& facts) {
             {"welded_vertices", facts.prepared.weldedVertices},
             {"duplicates", facts.prepared.duplicatePolygons},
             {"merged_sheets", facts.prepared.mergedSheets},
+            {"covered", facts.prepared.cover.coveredPolygons},
+            {"cut_by_coplanar", facts.prepared.cover.cutPolygons},
             {"slivers", facts.slivers}};
 }
 
@@ -141,6 +144,7 @@ Json infoReport(const InfoReportInput& in) {
     report["area"] = facts.area;
     report["emitted"] = jsonVector(facts.emitted);
     report["input"] = inputJson(in.read.report, facts);
+    report["coplanar_overlaps"] = overlapsJson(scene, facts.prepared.cover);
     report["surfaces"] = surfacesJson(scene, facts.surfaces);
     report["back_faces"] = backsJson(scene, facts.backs);
     report["back_faces_from_lights"] = backsJson(scene, facts.backsFromLights);
@@ -204,6 +208,8 @@ void printSummary(const InfoReportInput& in) {
                facts.prepared.weldedVertices, facts.prepared.joinedPairs);
     fmt::print("coincident  {} duplicates (left out), {} back to back (two sides of one polygon)\n",
                facts.prepared.duplicatePolygons, facts.prepared.mergedSheets);
+    fmt::print("coplanar    {} covered by others in their plane (left out), {} in part (cut)\n",
+               facts.prepared.cover.coveredPolygons, facts.prepared.cover.cutPolygons);
     fmt::print("slivers     {} polygons less high than 1/10000 of their longest edge\n", facts.slivers);
     const SurfaceCheck& surfaces = facts.surfaces;
     fmt::print("surfaces    {}, {} of them closed; {} open edges, {} of three or more polygons, {} where neighbours "

@@ -1,5 +1,6 @@
 #include "cli/scene_facts.h"
 
+#include "cli/overlap_text.h"
 #include "meshing/build_patch_mesh.h"
 #include "scene/input_file.h"
 
@@ -154,7 +155,13 @@ private:
         if (facts_.prepared.duplicatePolygons > 0)
             note(fmt::format("{} left out: another has the same vertices and side",
                              count(facts_.prepared.duplicatePolygons, "polygon")),
-                 "of two materials the first in the file shows; --exclude NODE chooses");
+                 "nothing, where it is the same surface twice");
+        if (const std::string overlaps = overlapText(scene_, facts_.prepared.cover); !overlaps.empty())
+            note(overlaps, "move what lies on top by .1 mm where another should show, or --exclude NODE");
+        if (facts_.prepared.cover.undecidedPolygons > 0)
+            note(fmt::format("{} in one plane with others that overlap it cannot be told apart",
+                             count(facts_.prepared.cover.undecidedPolygons, "polygon")),
+                 "move one of them by .1 mm, or --exclude NODE");
     }
 
     const Scene& scene_;
