@@ -1,0 +1,177 @@
+#include "meshing/hidden_patches.h"
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "meshing/patch_offset.h"
+#include "meshing/plane_frame.h"
+#include "meshing/prepare.h"
+#include "scene/surface.h"
+
+#include <boost/function_output_iterator.hpp>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lambert {
+
+namespace {
+
+constexpr float kInward = 0.1F;        ///< from a patch's border to its centroid, where it is looked at
+constexpr double kOpposed = -0.999999; ///< cosine between faces that touch
+constexpr int kStrata = 4;             ///< a packet's rays: kStrata × kStrata
+static_assert(kStrata * kStrata == RayPacket::kSize);
+
+/// Finds polygons by their boxes.
+class PolygonIndex {
+public:
+    explicit PolygonIndex(const Scene& scene) {
+        std::vector<Entry> entries;
+        entries.reserve(scene.polygons.size());
+        for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
+            glm::vec3 lower = corner(scene, scene.polygons[i], 0), upper = lower;
+            for (int k = 1; k < scene.polygons[i].size(); ++k) {
+                lower = glm::min(lower, corner(scene, scene.polygons[i], k));
+                upper = glm::max(upper, corner(scene, scene.polygons[i], k));
+            }
+            entries.emplace_back(box(lower, upper), i);
+        }
+        tree_ = Tree(entries);
+    }
+
+    void near(const glm::vec3& point, float distance, std::vector<std::uint32_t>& found) const {
+        found.clear();
+        const auto take = [&](const Entry& entry) { found.push_back(entry.second); };
+        tree_.query(boost::geometry::index::intersects(box(point - distance, point + distance)),
+                    boost::make_function_output_iterator(take));
+    }
+
+private:
+    using Point = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
+    using Box = boost::geometry::model::box<Point>;
+    using Entry = std::pair<Box, std::uint32_t>;
+    using Tree = boost::geometry::index::rtree<Entry, boost::geometry::index::quadratic<16>>;
+
+    static Box box(const glm::vec3& lower, const glm::vec3& upper) {
+        return {Point(lower.x, lower.y, lower.z), Point(upper.x, upper.y, upper.z)};
+    }
+
+    Tree tree_;
+};
+
+/// Looks at one patch after the other.
+class Looker {
+public:
+    Looker(const RayCaster& rays, const PatchMesh& mesh, const PolygonIndex& index)
+        : rays_(rays),
+          scene_(rays.scene()),
+          mesh_(mesh),
+          index_(index),
+          tolerance_(2.0F * weldTolerance(rays.scene())) {}
+
+    bool isHidden(std::size_t patch) {
+        setPoints(patch);
+        const glm::vec3 normal = mesh_.normal[patch];
+        const bool touched = isTouched(patch);
+        if (!touched && mesh_.emittedRadiosity[patch] != Rgb(0.0F)) return false;
+        const float offset = patchOriginOffset(rays_, mesh_, patch);
+        return seesBacksAlone(patch, normal, offset) || (touched && seesBacksAlone(patch, -normal, offset));
+    }
+
+private:
+    /// The centroid, and points of the border moved inward.
+    void setPoints(std::size_t patch) {
+        points_.assign(1, mesh_.centroid[patch]);
+        const int count = mesh_.cornerCount(patch);
+        for (int k = 0; k < count; ++k) {
+            const glm::vec3 a = mesh_.position(patch, k), b = mesh_.position(patch, (k + 1) % count);
+            points_.push_back(glm::mix(a, points_[0], kInward));
+            points_.push_back(glm::mix(0.5F * (a + b), points_[0], kInward));
+        }
+    }
+
+    /// Whether faces that face the patch lie on it everywhere.
+    bool isTouched(std::size_t patch) {
+        return std::all_of(points_.begin(), points_.end(), [&](const glm::vec3& point) {
+            index_.near(point, tolerance_, found_);
+            return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t other) {
+                return other != mesh_.polygon[patch] && touches(other, point, glm::dvec3(mesh_.normal[patch]));
+            });
+        });
+    }
+
+    bool touches(std::uint32_t index, const glm::vec3& point, const glm::dvec3& normal) const {
+        const Polygon& polygon = scene_.polygons[index];
+        if (isOccluder(scene_, polygon) || hasHoles(scene_, polygon)) return false;
+        const PlaneFrame frame = planeFrame(scene_, polygon);
+        const glm::dvec3 up = glm::cross(frame.axisX, frame.axisY);
+        if (glm::dot(up, normal) > kOpposed) return false;
+        if (std::abs(glm::dot(glm::dvec3(point) - frame.origin, up)) > static_cast<double>(tolerance_)) return false;
+        const glm::dvec2 p = frame.project(point);
+        for (int k = 0; k < polygon.size(); ++k) {
+            const glm::dvec2 a = frame.project(corner(scene_, polygon, k));
+            const glm::dvec2 edge = frame.project(corner(scene_, polygon, (k + 1) % polygon.size())) - a;
+            if (edge.x * (p.y - a.y) - edge.y * (p.x - a.x) < -static_cast<double>(tolerance_) * glm::length(edge))
+                return false;
+        }
+        return true;
+    }
+
+    /// Whether all rays to one side meet black backs.
+    bool seesBacksAlone(std::size_t patch, const glm::vec3& side, float offset) {
+        const glm::vec3 x = glm::normalize(
+            glm::cross(side, std::abs(side.x) < 0.6F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F)));
+        const glm::vec3 y = glm::cross(side, x);
+        for (std::uint32_t point = 0; point < points_.size(); ++point) {
+            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
+                const auto random = philox({static_cast<std::uint32_t>(patch), point, lane, 2}, 0);
+                const float squaredRadius = (static_cast<float>(lane / kStrata) + uniformFloat(random[0])) / kStrata;
+                const float angle = 2.0F * std::numbers::pi_v<float> *
+                                    (static_cast<float>(lane % kStrata) + uniformFloat(random[1])) / kStrata;
+                const float radius = std::sqrt(squaredRadius);
+                const glm::vec3 direction = radius * (std::cos(angle) * x + std::sin(angle) * y) +
+                                            std::sqrt(std::max(1.0F - squaredRadius, 0.0F)) * side;
+                packet_.directionX[lane] = direction.x;
+                packet_.directionY[lane] = direction.y;
+                packet_.directionZ[lane] = direction.z;
+                packet_.active[lane] = -1;
+            }
+            rays_.closest(points_[point] + offset * side, packet_);
+            for (int lane = 0; lane < RayPacket::kSize; ++lane)
+                if (!isBlackBack(packet_.polygon[lane], packet_.facing[lane])) return false;
+        }
+        return true;
+    }
+
+    bool isBlackBack(std::uint32_t polygon, float facing) const {
+        return polygon != kNone && facing >= 0.0F && scene_.polygons[polygon].backMaterial == kNone &&
+               !isOccluder(scene_, scene_.polygons[polygon]);
+    }
+
+    const RayCaster& rays_;
+    const Scene& scene_;
+    const PatchMesh& mesh_;
+    const PolygonIndex& index_;
+    float tolerance_;
+    std::vector<glm::vec3> points_;
+    std::vector<std::uint32_t> found_;
+    RayPacket packet_;
+};
+
+} // namespace
+
+std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh) {
+    const PolygonIndex index(rays.scene());
+    std::vector<char> hidden(mesh.size(), 0); // of threads' own, which bits are not
+    parallelFor(mesh.size(), 256, [&](std::size_t begin, std::size_t end, int) {
+        Looker looker(rays, mesh, index);
+        for (std::size_t patch = begin; patch < end; ++patch) hidden[patch] = looker.isHidden(patch) ? 1 : 0;
+    });
+    return {hidden.begin(), hidden.end()};
+}
+
+} // namespace lambert
