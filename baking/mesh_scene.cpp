@@ -1,6 +1,7 @@
 #include "baking/mesh_scene.h"
 
 #include "core/error.h"
+#include "meshing/hidden_patches.h"
 
 #include <algorithm>
 
@@ -37,6 +38,8 @@ MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& 
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options, progress, &result.meshReport);
+    std::vector<bool> hidden = findHiddenPatches(*result.rays, result.mesh);
+    if (std::find(hidden.begin(), hidden.end(), true) != hidden.end()) result.mesh.hidden = std::move(hidden);
     progress.end();
     return result;
 }

@@ -30,9 +30,10 @@ BakedLight bakeGroup(MeshedScene& scene, LightGroup group, const LightSolver& so
     const OtherEmission emission(scene.mesh, emittedBy(group, scene.mesh));
     DirectIrradiance direct =
         directIrradiance(scene.mesh, *scene.rays, o.directLight, sourcesOf(group, *scene.scene), progress);
-    const RadiositySolution solution = isDark(scene.mesh, direct.values)
-                                           ? darkness(scene.mesh.size())
-                                           : solver(SolverProblem(scene.mesh, std::move(direct.values), o.emitters.of(group.material)));
+    const RadiositySolution solution =
+        isDark(scene.mesh, direct.values)
+            ? darkness(scene.mesh.size())
+            : solver(SolverProblem(scene.mesh, std::move(direct.values), o.emitters.of(group.material)));
     BakedMesh baked = reconstructAverage(scene.mesh, *scene.scene, solution, o.reconstruction);
     return {std::move(group),           solution.energy,
             solution.iterations,        solution.residual,

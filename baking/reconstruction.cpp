@@ -86,6 +86,11 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
     baked.materials = scene.materials;
     baked.faceMaterials = mesh.material;
     baked.opacity = mesh.opacity;
+    if (!options.keepHidden && !mesh.hidden.empty()) {
+        baked.opacity.resize(mesh.size(), 1.0F);
+        for (std::size_t patch = 0; patch < mesh.size(); ++patch)
+            if (mesh.hidden[patch]) baked.opacity[patch] = 0.0F;
+    }
     baked.emitters.reserve(mesh.size());
     for (const Rgb& b : mesh.emittedRadiosity) baked.emitters.push_back(b != Rgb(0.0F));
 

@@ -167,6 +167,7 @@ BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
         }
     }
     options.warmStart = a.warmStart;
+    options.reconstruction.keepHidden = a.patches == std::size_t{0}; // the caller's mesh
     options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
     return options;
 }

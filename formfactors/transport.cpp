@@ -233,7 +233,10 @@ TransportPlan planTransport(const TransportOptions& options, const PatchMesh& me
     throw UsageError("no effort to choose from"); // not reached: the last one returns or throws
 }
 
-std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays) {
+namespace {
+
+std::unique_ptr<FormFactorMethod> makeOpenMethod(const TransportPlan& plan, const PatchMesh& mesh,
+                                                 const RayCaster& rays) {
     const TransportOptions& o = plan.options;
     switch (o.method) {
     case TransportMethod::Hemicube:
@@ -255,6 +258,39 @@ std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const Pa
     throw UsageError("global-lines: computes no single rows");
 }
 
+/// Another method, but for the rows of hidden patches.
+class WithHiddenPatches : public FormFactorMethod {
+public:
+    WithHiddenPatches(std::unique_ptr<FormFactorMethod> method, const PatchMesh& mesh)
+        : method_(std::move(method)), mesh_(mesh) {}
+
+    void row(std::uint32_t patch, RowAccumulator& accumulator) const override {
+        if (mesh_.isHidden(patch))
+            accumulator.add(accumulator.back(), 1.0);
+        else
+            method_->row(patch, accumulator);
+    }
+    void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
+                  RowAccumulator& accumulator) const override {
+        method_->pointRow(origin, normal, index, accumulator);
+    }
+    std::size_t patchCount() const override { return method_->patchCount(); }
+    std::uint64_t raysPerRow() const override { return method_->raysPerRow(); }
+    std::uint64_t raysTraced() const override { return method_->raysTraced(); }
+
+private:
+    std::unique_ptr<FormFactorMethod> method_;
+    const PatchMesh& mesh_;
+};
+
+} // namespace
+
+std::unique_ptr<FormFactorMethod> makeMethod(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays) {
+    auto method = makeOpenMethod(plan, mesh, rays);
+    if (mesh.hidden.empty()) return method;
+    return std::make_unique<WithHiddenPatches>(std::move(method), mesh);
+}
+
 TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, const RayCaster& rays,
                               Progress& progress, MatrixCheckpoint* checkpoint) {
     const TransportOptions& o = plan.options;
@@ -269,7 +305,14 @@ TransportMatrix computeMatrix(const TransportPlan& plan, const PatchMesh& mesh, 
     GlobalLineOptions options{.lines = o.lines.value(), .set = o.lineSet, .sampler = o.sampler, .seed = o.seed};
     GlobalLineCounts counts(mesh.size());
     traceLines(GlobalLines(mesh, caster, options), counts, progress, checkpoint);
-    return {counts.matrix(storage, progress), counts.repairWeights(mesh.area), plan.rays};
+    FormFactorMatrix matrix = counts.matrix(storage, progress);
+    for (std::size_t patch = 0; patch < mesh.size(); ++patch) {
+        if (!mesh.isHidden(patch)) continue;
+        FormFactorRow row;
+        row.back = 1.0;
+        matrix.setRow(patch, row);
+    }
+    return {std::move(matrix), counts.repairWeights(mesh.area), plan.rays};
 }
 
 std::vector<double> repairWeights(const PatchMesh& mesh) {

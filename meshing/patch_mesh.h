@@ -33,6 +33,7 @@ struct PatchMesh {
     std::vector<float> opacity;          //!< #patches, share of the patch that is not a hole; empty: no holes at all
     std::vector<std::uint32_t> polygon;  //!< #patches, into Scene::polygons
     std::vector<std::uint32_t> material; //!< #patches, into Scene::materials
+    std::vector<bool> hidden; //!< #patches, see findHiddenPatches: F_back is 1, no light arrives; empty: none
     std::size_t frontCount = 0;
 
     std::vector<OccluderEdge> occluderEdges; //!< where light may change abruptly although no patch stands there
@@ -41,6 +42,7 @@ struct PatchMesh {
 
     std::size_t size() const { return corners.size(); }
     bool isQuad(std::size_t patch) const { return corners[patch][3] != kNone; }
+    bool isHidden(std::size_t patch) const { return !hidden.empty() && hidden[patch]; }
     bool isBack(std::size_t patch) const { return patch >= frontCount; }
     int cornerCount(std::size_t patch) const { return isQuad(patch) ? 4 : 3; }
     const glm::vec3& position(std::size_t patch, int k) const {

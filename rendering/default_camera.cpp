@@ -129,7 +129,8 @@ Camera defaultCamera(const Scene& scene, const RayCaster& caster, float aspect) 
         // A plan shows most of a floor, but one recognises a scene from the side.
         best.offer(camera, (vertical ? 0.25F : 1.0F) * score(caster, camera, aspect));
     }
-    if (best.camera) return *best.camera;
+    // What is open only because the box reaches beyond the walls, of an L-shaped room, shows backs from outside.
+    if (best.camera && best.score > 0.0F) return *best.camera;
     for (const Camera& camera : insideCameras(bounds)) best.offer(camera, score(caster, camera, aspect));
     return *best.camera;
 }

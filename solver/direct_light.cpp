@@ -233,6 +233,7 @@ std::vector<RgbSum> DirectLight::irradiance(const PatchMesh& mesh, const LightSo
     progress.begin("direct light", mesh.size());
     parallelFor(mesh.size(), 64, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t patch = begin; patch < end; ++patch) {
+            if (mesh.isHidden(patch)) continue;
             const PatchPoints surface(mesh, patch);
             const glm::vec3 offset = patchOriginOffset(rays_, mesh, patch) * mesh.normal[patch];
             result[patch] = gather(rays_, options_, {mesh.normal[patch], offset, &surface}, options_.points,

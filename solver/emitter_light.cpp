@@ -382,6 +382,7 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
     if (byMaterial) byMaterial->assign(groups, result);
     if (empty()) return result;
     const auto ofPatch = [&](std::size_t patch, std::vector<RgbSum>& sums) {
+        if (mesh.isHidden(patch)) return;
         const std::uint64_t key = keyOf(static_cast<std::uint32_t>(patch), 0x454D4950, seed_);
         Receiver receiver(*this, planeOf(mesh, patch), patchOriginOffset(rays_, mesh, patch), key);
         if (receiver.isDark()) return;

@@ -1,5 +1,6 @@
 #include "rendering/default_camera.h"
 
+#include "scene/example_scenes.h"
 #include "tests/rendering/box_scene.h"
 
 #include <glm/trigonometric.hpp>
@@ -82,6 +83,32 @@ TEST(DefaultCamera, IsInsideAClosedBoxAndSeesItsFar) {
         EXPECT_NEAR(glm::length(glm::cross(camera.direction, glm::normalize(-camera.eye))), 0.0F, 1e-5F);
         EXPECT_NEAR(camera.verticalFov, glm::radians(65.0F), 1e-5F);
     }
+}
+
+// The box around an L-shaped room reaches beyond its walls, so that most rays from its middle leave it.
+TEST(DefaultCamera, IsInsideARoomThatIsNoBox) {
+    using Quad = std::array<glm::vec3, 4>;
+    const auto wall = [](glm::vec3 a, glm::vec3 b) {
+        return Quad{a, b, b + glm::vec3(0, 2.5F, 0), a + glm::vec3(0, 2.5F, 0)};
+    };
+    std::vector<Quad> quads{{glm::vec3(0, 0, 5), {2, 0, 5}, {2, 0, 0}, {0, 0, 0}},
+                            {glm::vec3(2, 0, 2), {6, 0, 2}, {6, 0, 0}, {2, 0, 0}},
+                            {glm::vec3(0, 2.5F, 0), {2, 2.5F, 0}, {2, 2.5F, 5}, {0, 2.5F, 5}},
+                            {glm::vec3(2, 2.5F, 0), {6, 2.5F, 0}, {6, 2.5F, 2}, {2, 2.5F, 2}},
+                            wall({0, 0, 0}, {6, 0, 0}),
+                            wall({6, 0, 0}, {6, 0, 2}),
+                            wall({6, 0, 2}, {2, 0, 2}),
+                            wall({2, 0, 2}, {2, 0, 5}),
+                            wall({2, 0, 5}, {0, 0, 5}),
+                            wall({0, 0, 5}, {0, 0, 0})};
+    const std::vector<Material> materials(quads.size());
+    const Scene scene = quadScene(quads, materials);
+    const RayCaster caster(scene);
+    const Camera camera = defaultCamera(scene, caster, 1.0F);
+    const auto hit = caster.closest(Ray{camera.eye, camera.direction});
+    ASSERT_TRUE(hit);
+    EXPECT_TRUE(hit->front);
+    EXPECT_TRUE(camera.eye.x < 2.0F || camera.eye.z < 2.0F) << camera.eye.x << " " << camera.eye.z;
 }
 
 TEST(DefaultCamera, ExistsForEveryScene) {
