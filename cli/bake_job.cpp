@@ -185,10 +185,12 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     const ReadResult read = readJob(a, job, log, progress);
     const double readSeconds = total.seconds();
 
-    const BakedScene baked = bakeScene(read.scene, options, progress);
+    BakedScene baked = bakeScene(read.scene, options, progress);
+    const std::string overlaps = overlapText(*baked.scene, baked.prepareReport.cover);
+    const bool cut = baked.prepareReport.cover.takenAway;
+    if (!overlaps.empty() && !cut) baked.warnings.push_back(overlaps);
     for (const std::string& warning : baked.warnings) log.warning(warning);
-    if (const std::string overlaps = overlapText(*baked.scene, baked.prepareReport.cover); !overlaps.empty())
-        baked.prepareReport.cover.takenAway ? log.line(overlaps) : log.warning(overlaps);
+    if (!overlaps.empty() && cut) log.line(overlaps);
     log.line(fmt::format("{} patches, {}: {}", baked.mesh.size(), transportText(a, baked), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));

@@ -60,7 +60,8 @@ class CoplanarTest(ProgramTest):
 
     def baked(self, objects, *options, **how):
         unit = how.get("unit", 1.0)
-        return self.bake(self.scene(objects, **how), "--unit", unit, "--patches", "1000", *options)
+        patches = () if "--patches" in options else ("--patches", "1000")
+        return self.bake(self.scene(objects, **how), "--unit", unit, *patches, *options)
 
     def wall(self, report):
         return materials(report)["wall"]["mean_irradiance"][0]
@@ -76,8 +77,8 @@ CEILING_LAMP = ("lamp", "lamp", [ceiling(*LAMP)])
 
 
 class ALampInTheCeiling(CoplanarTest):
-    # What is not absorbed by the lamp, on which E is .694 (1 % of that is .05 %), is absorbed by .3 of 80 m² of wall, of which 1.32 lie
-    # above the lamp: (20.735 - 1.32 * .694) / 24. 1 %: 1000 patches and their one viewpoint.
+    # All is absorbed: what the lamp leaves, on which E is .694 (1 % of that is .05 % here), by .3 of 80 m² of wall, of which 1.32 m²
+    # lie above the lamp: (20.735 - 1.32 * .694) / 24. 1 %: 1000 patches and their one viewpoint.
     RIGHT, WITHIN = 0.8257, 0.01
 
     def check(self, *options, objects=(ROOM_WALLS, CEILING_LAMP), **how):
@@ -87,18 +88,16 @@ class ALampInTheCeiling(CoplanarTest):
         return report
 
     def test_every_method_sees_it(self):
-        for options in [("--method", "hemicube", "--resolution", "64"), ("--method", "hemisphere", "--resolution", "64"),
-                        ("--method", "local-lines", "--lines", "4096"), ("--method", "global-lines", "--lines", "4e6"),
-                        ("--method", "closed-form", "--patches", "150"), ("--solver", "stochastic"),
-                        ("--method", "instant-radiosity", "--vpls", "2000")]:
+        for options in [("--method", "hemicube", "--resolution", "48"), ("--method", "hemisphere", "--resolution", "48"),
+                        ("--method", "local-lines", "--lines", "2048"), ("--method", "global-lines", "--lines", "1000000"),
+                        ("--method", "closed-form", "--patches", "100"), ("--solver", "stochastic"),
+                        ("--method", "instant-radiosity", "--vpls", "1000", "--clamp", "none")]:
             with self.subTest(options):
                 self.check(*options)
 
     def test_variants_of_the_scene(self):
-        fast = ("--method", "hemicube", "--resolution", "64")
+        fast = ("--method", "local-lines", "--lines", "2048")
         self.check(*fast, objects=(CEILING_LAMP, ROOM_WALLS))
-        self.check(*fast, triangles=True)
-        self.check(*fast, turn=True)
         self.check(*fast, turn=True, triangles=True, unit=0.001)
         hair = 5e-6  # within the tolerance, which is 2e-6 of the room's diagonal
         self.check(*fast, objects=(ROOM_WALLS, ("lamp", "lamp", [ceiling(*LAMP, y=3 + hair)])))
@@ -126,7 +125,7 @@ class ALampInTheCeiling(CoplanarTest):
 
 
 class OtherOverlaps(CoplanarTest):
-    FAST = ("--method", "hemicube", "--resolution", "64")
+    FAST = ("--method", "local-lines", "--lines", "2048")
 
     def same_light(self, objects, cut, **how):
         """The light of the scene is that of one whose faces were cut by hand. 1 %: the patches are others."""
@@ -138,7 +137,6 @@ class OtherOverlaps(CoplanarTest):
     def test_a_rug_on_the_floor_in_any_order(self):
         rug = ("rug", "rug", [floor(*RUG)])
         cut = (("room", "wall", ROOM + around(floor, WHOLE, RUG) + around(ceiling, WHOLE, LAMP)), rug, CEILING_LAMP)
-        self.same_light((ROOM_WALLS, CEILING_LAMP, rug), cut)
         self.same_light((rug, ROOM_WALLS, CEILING_LAMP), cut, turn=True, unit=0.001)
         # It lies across the tiles of a floor.
         tiles = [floor(x, z, x + 1, z + 1) for x in range(4) for z in range(4)]
@@ -152,12 +150,11 @@ class OtherOverlaps(CoplanarTest):
         self.same_light((ROOM_WALLS, CEILING_LAMP, rug), cut)
 
     def test_two_lamps_emit_once_where_they_overlap(self):
-        for lamps in [(LAMP, LAMP_2), (LAMP_2, LAMP)]:
-            objects = [ROOM_WALLS] + [(f"lamp{k}", "lamp", [ceiling(*lamp)]) for k, lamp in enumerate(lamps)]
-            report = self.baked(objects, *self.FAST)
-            self.assert_close(report["energy"]["emitted"][0], (1.32 + 1.95 - 0.3) * 5 * math.pi, 1e-5)
-            # All is absorbed: by hemicubes of 64 pixels to their closure.
-            self.assertLess(abs(report["energy"]["imbalance"]), 0.01)
+        objects = (ROOM_WALLS, CEILING_LAMP, ("lamp 2", "lamp", [ceiling(*LAMP_2)]))
+        report = self.baked(objects, *self.FAST)
+        self.assert_close(report["energy"]["emitted"][0], (1.32 + 1.95 - 0.3) * 5 * math.pi, 1e-5)
+        # All is absorbed, to the noise of the lines.
+        self.assertLess(abs(report["energy"]["imbalance"]), 0.01)
 
     def test_what_only_touches_is_no_overlap(self):
         lamps = ("lamp", "lamp", [ceiling(1, 1, 2, 2, 2.5), ceiling(2, 1, 3, 2, 2.5), ceiling(1, 2, 2.5, 3, 2.5)])
@@ -171,7 +168,8 @@ class BackToBack(ProgramTest):
         scene = self.write("sheets.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                            "v .4 0 0\nv .4 1 0\n" + faces)
         report = self.folder / "f.json"
-        self.run_well("formfactors", scene, "--patches", "0", "--method", "local-lines", "--group-by", "node", "--json", report)
+        self.run_well("formfactors", scene, "--patches", "0", "--method", "local-lines", "--group-by", "node", "--json",
+                      report)
         groups = read_json(report)["groups"]
         names = [group["name"] for group in groups]
         return lambda of, to: groups[names.index(of)]["factors"][names.index(to)]
