@@ -15,6 +15,7 @@ BakedScene bake(const Scene& scene, std::size_t patches, bool splitContacts = tr
     BakeOptions options;
     options.mesh.patches = patches;
     options.mesh.splitContacts = splitContacts;
+    options.formFactors.transport.method = TransportMethod::Hemicube;
     options.formFactors.transport.resolution = 32;
     Progress progress;
     return bakeScene(scene, options, progress);

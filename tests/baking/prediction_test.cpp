@@ -10,6 +10,7 @@ namespace {
 BakeOptions smallOptions() {
     BakeOptions options;
     options.mesh.patches = 400;
+    options.formFactors.transport.method = TransportMethod::Hemicube;
     options.formFactors.transport.resolution = 32;
     return options;
 }
@@ -22,6 +23,17 @@ TEST(Prediction, PatchesResolutionAndRaysAreThoseOfTheBake) {
     EXPECT_EQ(predicted.patches, baked.mesh.size());
     EXPECT_EQ(predicted.plan->options.resolution, baked.plan->options.resolution);
     EXPECT_EQ(predicted.rays, baked.rayCount);
+}
+
+// From 32 rows at least, which differ by a third or so: three standard errors of their mean.
+TEST(Prediction, RaysOfAutoAreAboutThoseOfTheBake) {
+    Progress progress;
+    const Scene scene = roomWithBoxScene();
+    BakeOptions options;
+    options.mesh.patches = 400;
+    const BakePrediction predicted = predictBake(scene, options, progress);
+    const BakedScene baked = bakeScene(scene, options, progress);
+    EXPECT_NEAR(static_cast<double>(predicted.rays) / static_cast<double>(baked.rayCount), 1.0, 0.2);
 }
 
 TEST(Prediction, MatrixHasAboutThePredictedSize) {

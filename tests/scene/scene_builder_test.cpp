@@ -225,7 +225,7 @@ TEST_F(SceneBuilderTest, AcceptsAPatchOfTheSmallestSceneAndRefusesSmallerScenes)
     SceneBuilder tooSmall("file", {});
     tooSmall.addMaterial({});
     addCorner(tooSmall, 5e-11, 1.0); // the corners are one in single precision
-    EXPECT_THROW(tooSmall.finish(), InputError);
+    EXPECT_NE(tooSmall.finish().report.neededOrigin, glm::dvec3(0.0)); // to be read again, about itself
     SceneBuilder alsoTooSmall("file", {});
     alsoTooSmall.addMaterial({});
     addCorner(alsoTooSmall, 5e-11, 0.0);

@@ -20,6 +20,7 @@ namespace lambert {
 
 inline TransportOptions hemicubes(int resolution) {
     TransportOptions options;
+    options.method = TransportMethod::Hemicube;
     options.resolution = resolution;
     return options;
 }
@@ -80,7 +81,7 @@ struct SceneCase {
 /// The same case for all solvers, made once.
 inline const SceneCase& sceneCase(const std::string& name, std::size_t patches, const TransportOptions& options) {
     static std::map<std::string, std::unique_ptr<SceneCase>> cases;
-    auto& found = cases[name];
+    auto& found = cases[name + std::to_string(patches) + std::string(nameOf(options.method))];
     if (!found) found = std::make_unique<SceneCase>(name, patches, options);
     return *found;
 }
