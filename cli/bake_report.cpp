@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -65,6 +66,7 @@ Json meshJson(const BakedScene& baked) {
             {"contact_polygons", baked.meshReport.contactPolygons},
             {"ignored_contact_polygons", baked.meshReport.ignoredContactPolygons},
             {"degenerate_patches", baked.meshReport.degeneratePatches},
+            {"hidden_patches", std::count(baked.mesh.hidden.begin(), baked.mesh.hidden.end(), true)},
             {"separated_faces", baked.separatedFaces}};
 }
 

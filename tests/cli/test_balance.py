@@ -4,7 +4,7 @@ import unittest
 
 from lambert_cli import MISSED, OK, ProgramTest, read_json, read_table, run
 
-# A closed room of 2 m with a lamp of two sides 2 cm below its ceiling.
+# A closed room of 2 m with a white lamp of two sides 10 cm below its ceiling.
 ROOM = """mtllib room.mtl
 v 0 0 0
 v 2 0 0
@@ -14,10 +14,10 @@ v 0 0 2
 v 2 0 2
 v 2 2 2
 v 0 2 2
-v .9 .9 1.98
-v 1.1 .9 1.98
-v 1.1 1.1 1.98
-v .9 1.1 1.98
+v .4 .4 1.9
+v 1.6 .4 1.9
+v 1.6 1.6 1.9
+v .4 1.6 1.9
 usemtl wall
 f 1 2 3 4
 f 5 8 7 6
@@ -29,9 +29,9 @@ usemtl lamp
 f 9 10 11 12
 f 12 11 10 9
 """
-MATERIALS = "newmtl wall\nKd .6 .6 .6\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n"
+MATERIALS = "newmtl wall\nKd .9 .9 .9\nnewmtl lamp\nKd .95 .95 .95\nKe 1 1 1\n"
 # One viewpoint per patch, and no division of the ceiling along the lamp's outline.
-COARSE = ("--patches", "200", "--whole-contacts", "--method", "hemicube", "--resolution", "32", "--quiet")
+COARSE = ("--patches", "30", "--whole-contacts", "--method", "hemicube", "--resolution", "8", "--quiet")
 
 
 class BalanceTest(ProgramTest):
@@ -56,15 +56,15 @@ class Bake(BalanceTest):
         report = self.baked(MISSED, *COARSE)
         energy = report["energy"]
         self.assertGreater(abs(energy["imbalance"]), .05)
-        # The same but for the residual of 1e-4, of light that is passed on 1 / (1 - .6) times.
+        # The same but for the residual of 1e-4, of light that is passed on 1 / (1 - .9) times.
         self.assertAlmostEqual(energy["imbalance_before_repair"], energy["imbalance"], delta=1e-3)
         self.assertEqual(len(report["warnings"]), 1)
-        for text in ("form factors", '"lamp"', "--hemicubes 4", "--solver stochastic", "exit code 1"):
+        for text in ("form factors", "--hemicubes 4", "--solver stochastic", "exit code 1"):
             self.assertIn(text, report["warnings"][0])
 
     def test_a_repair_hides_nothing(self):
         report = self.baked(MISSED, *COARSE, "--repair")
-        self.assertLess(abs(report["energy"]["imbalance"]), 1e-3)
+        self.assertLess(abs(report["energy"]["imbalance"]), .01)  # of the lamp's own light, which is found apart
         self.assertGreater(abs(report["energy"]["imbalance_before_repair"]), .05)
         self.assertIn("before repair", report["warnings"][0])
         self.assertGreater(report["form_factors"]["repair"]["row_change"], .01)
@@ -78,7 +78,7 @@ class Bake(BalanceTest):
         (self.folder / "scenes").mkdir()
         self.write("scenes/room.mtl", MATERIALS)
         self.write("scenes/near.obj", ROOM)
-        self.write("scenes/far.obj", ROOM.replace("1.98", "1"))
+        self.write("scenes/far.obj", ROOM.replace("1.9\n", "1\n"))
         done = run("bake", self.folder / "scenes", "--output-dir", self.folder / "out", "--json",
                    self.folder / "report.json", *COARSE[:-1])
         self.assertEqual(done.returncode, MISSED, done.stderr)

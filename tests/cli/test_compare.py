@@ -92,7 +92,7 @@ class ThePage(CompareTest):
         self.assertEqual([method["name"] for method in report["methods"]], list(METHODS))
         self.assertGreater(report["reference"]["own_error"], 0)
         rows = self.rows(self.out)
-        self.assertEqual(len(rows), 4 * 2 * 2 + 2)  # two seeds but of closed forms
+        self.assertEqual(len(rows), 5 * 2 * 2 + 2)  # two seeds but of closed forms
         for method in report["methods"]:
             for effort in method["efforts"]:
                 same = [float(row["relative_rms"]) for row in rows
