@@ -34,11 +34,10 @@ void bakeLights(const BakeOptions& options, const LightOfMaterials& emitters, co
         result.lights = bakePerLight(result, solver, {options.directLight, options.reconstruction, emitters}, progress);
 }
 
-/// Light of emitters is found apart from form factors that are computed here; those of a file are taken at their word, and lines from
-/// the emitters miss nothing. By material where each light is to be baked alone.
+/// Light of emitters is found apart from form factors; lines from the emitters miss nothing. By material where each light is to be baked alone.
 LightOfMaterials lightOfEmitters(const BakeOptions& options, BakedScene& result, Progress& progress) {
     LightOfMaterials light;
-    if (options.instantRadiosity || usesLines(options.solver.method) || !options.formFactors.file.empty()) return light;
+    if (options.instantRadiosity || usesLines(options.solver.method)) return light;
     const EmitterLight emitters(*result.rays, result.mesh, options.directLight.seed);
     if (emitters.empty()) return light;
     light.materials.assign(emitters.materials().begin(), emitters.materials().end());

@@ -2,12 +2,21 @@
 
 #include "core/error.h"
 #include "meshing/hidden_patches.h"
+#include "scene/environment.h"
 
 #include <algorithm>
 
 namespace lambert {
 
 namespace {
+
+/// Whether there is a light without area that is not black.
+bool shinesWithoutArea(const Scene& scene) {
+    const Environment* const sky = scene.environment.get();
+    return std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const PunctualLight& light) { return light.intensity != Rgb(0.0F); }) ||
+           (sky != nullptr && (sky->distribution() != nullptr || Rgb(sky->radiance({0.0, 1.0, 0.0})) != Rgb(0.0F)));
+}
 
 void requireLight(const Scene& scene) {
     const bool lit = std::any_of(scene.polygons.begin(), scene.polygons.end(), [&](const Polygon& polygon) {
@@ -45,7 +54,7 @@ MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& 
 }
 
 MeshedScene meshLitScene(const Scene& scene, const MeshOptions& options, Progress& progress) {
-    const bool needsEmitter = scene.lights.empty() && scene.environment == nullptr;
+    const bool needsEmitter = !shinesWithoutArea(scene);
     if (needsEmitter) requireLight(scene);
     MeshedScene result = meshScene(scene, options, progress);
     if (needsEmitter) requireLight(result.mesh);

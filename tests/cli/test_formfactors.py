@@ -63,8 +63,9 @@ class Report(FormFactorsTest):
         for method in METHODS:
             report = self.bake(CORNELL, "--patches", 1000, "--method", method, *EFFORT[method], "--repair",
                                "--tolerance", 1e-6)
-            # What is left is the solver's residual, at most its tolerance times the ratio of all area to the light's.
-            self.assertLess(abs(report["energy"]["imbalance"]), 1e-4, method)
+            # What is left is the solver's residual, at most its tolerance times the ratio of all area to the light's; and what
+            # the lamp's row of auto, known to 1 %, says of the light that leaves the box: 2 % of it, by chance.
+            self.assertLess(abs(report["energy"]["imbalance"]), 5e-4 if method == "auto" else 1e-4, method)
 
     def test_options_that_a_method_does_not_have_are_refused(self):
         self.assertIn("--lines", self.refused(USAGE, CUBE, "--lines", 100, "-o", self.folder / "m.npy"))
@@ -385,7 +386,7 @@ class Checkpoints(FormFactorsTest):
 
     def test_bakes_go_on_too(self):
         checkpoint, baked = self.folder / "rows", self.folder / "box.ply"
-        work = ("bake", CORNELL, "--patches", 3000, "--quiet")
+        work = ("bake", CORNELL, "--patches", 3000, "--method", "hemicube", "--quiet")
         self.run_well(*work, "-o", self.folder / "whole.ply")
         self.stop(signal.SIGKILL, checkpoint, self.folder / "m.npy")
         self.run_well(*work, "-o", baked, "--resolution", 128, "--checkpoint", checkpoint, "--resume")

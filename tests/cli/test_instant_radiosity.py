@@ -130,7 +130,7 @@ class Files(ProgramTest):
         self.assertEqual(report["patches"], Gltf(solution).extras().get("patches", report["patches"]), done.stdout)
 
     def test_of_a_batch(self):
-        self.run_well("bake", BOX, DATA / "cube6.obj", "--output-dir", self.folder / "out", *METHOD, "--vpls", "100",
+        self.run_well("bake", BOX, DATA / "cube6.obj", "--output-dir", self.folder / "out", *METHOD, "--vpls", "2000",
                       "--patches", "100", "--json", self.folder / "runs.json", "--quiet")
         runs = read_json(self.folder / "runs.json")["runs"]
         self.assertEqual([entry["method"] for entry in runs], 2 * ["instant-radiosity"])
