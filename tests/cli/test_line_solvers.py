@@ -98,7 +98,7 @@ class Checkpoint(ProgramTest):
             self.run_well(*self.command("whole", *options))
             report = read_json(self.folder / "whole.json")
             killed = kept = 0
-            for share in (0.3, 0.4, 0.5):
+            for share in (0.3, 0.5, 0.7, 0.9):
                 killed += self.killed(share * report["seconds"]["total"], *self.keeping(*options), "--resume")
                 kept += (self.folder / "state.solver").exists()
             self.assertGreater(killed, 0, options)

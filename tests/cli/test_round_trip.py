@@ -4,7 +4,7 @@ import sys
 import unittest
 from typing import Callable, NamedTuple
 
-from lambert_cli import DATA, ProgramTest, materials
+from lambert_cli import DATA, MISSED, OK, ProgramTest, materials, read_json, run
 
 sys.path.insert(0, str(DATA))
 import generate
@@ -31,8 +31,9 @@ FORMATS = {
 
 EMITTED, REFLECTANCE = "0.3,0.2,0.1", "0.5,0.6,0.7"
 SAME_RAYS = ("--rotation", "fixed", "--resolution", "64")
-# Most bakes are the same to the last bit; glTF places objects in single precision, which may move a hemicube's pixel.
-ROUNDING = 1e-4
+# Most bakes are the same to the last bit; glTF places objects in single precision, which may move a hemicube's pixel, and change
+# how many points a patch takes to know the light of emitters to 0.3 %.
+ROUNDING = 4e-3
 # Formats without quads come as pairs of triangles, in another order: other random rotations, so other errors.
 DEFAULTS = 0.005
 
@@ -52,6 +53,13 @@ def of_one_material(scene):
 
 
 class RoundTrip(ProgramTest):
+    def bake(self, scene, *arguments):
+        """The report; one view for a whole wall may well miss the balance of energy."""
+        report = self.folder / "report.json"
+        done = run("bake", scene, "--json", report, "--quiet", *arguments)
+        self.assertIn(done.returncode, (OK, MISSED), done.stderr)
+        return read_json(report)
+
     def check(self, scene, names, tolerance, *options):
         """Bakes the scene from each format and compares it with the first one."""
         first = None

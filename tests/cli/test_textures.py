@@ -20,7 +20,8 @@ class TexturedRoom(ProgramTest):
                            "--tolerance", "1e-6")
         texels = sum(generate.in_leaf((x + .5) / 64, (y + .5) / 64) for x in range(64) for y in range(64))
         self.assert_close(materials(report)["leaf"]["area"], texels / 64 ** 2, 1e-5)  # of 1 m², summed in floats
-        self.assertLess(abs(report["energy"]["imbalance"]), 1e-5)
+        # The light of the lamp is found apart, to 0.3 % on each patch, and what of it meets backs by its hemicubes.
+        self.assertLess(abs(report["energy"]["imbalance"]), 1e-3)
 
     def test_twins_have_the_same_light(self):
         # The same patches and rays; glTF has triangles, whose pairs become quads again, and single precision.
@@ -32,7 +33,7 @@ class TexturedRoom(ProgramTest):
         for name, material in expected.items():
             self.assert_close(found[name]["area"], material["area"], 1e-5, name)
             for f, e in zip(found[name]["mean_irradiance"], material["mean_irradiance"]):
-                self.assert_close(f, e, 2e-3, name)
+                self.assert_close(f, e, 4e-3, name)  # light of emitters: to 0.3 % in either
 
 
 if __name__ == "__main__":
