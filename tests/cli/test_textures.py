@@ -24,8 +24,8 @@ class TexturedRoom(ProgramTest):
         self.assertLess(abs(report["energy"]["imbalance"]), 1e-3)
 
     def test_twins_have_the_same_light(self):
-        # The same patches and rays; glTF has triangles, whose pairs become quads again, and single precision.
-        options = ("-o", self.folder / "room.glb", "--patches", "1500", "--resolution", "64", "--rotation", "fixed")
+        # The same patches; glTF has triangles, whose pairs become quads again, so that rays differ, and single precision.
+        options = ("-o", self.folder / "room.glb", "--patches", "1500")
         overrides = self.write("overrides.json", LEAF_TWO_SIDED)
         expected = materials(self.bake(ROOM, *options))
         found = materials(self.bake(TWIN, *options, "--overrides", overrides))
@@ -33,7 +33,7 @@ class TexturedRoom(ProgramTest):
         for name, material in expected.items():
             self.assert_close(found[name]["area"], material["area"], 1e-5, name)
             for f, e in zip(found[name]["mean_irradiance"], material["mean_irradiance"]):
-                self.assert_close(f, e, 4e-3, name)  # light of emitters: to 0.3 % in either
+                self.assert_close(f, e, 6e-3, name)  # light of emitters with textures: half a percent in a channel
 
 
 if __name__ == "__main__":
