@@ -33,7 +33,7 @@ class TexturedRoom(ProgramTest):
         for name, material in expected.items():
             self.assert_close(found[name]["area"], material["area"], 1e-5, name)
             for f, e in zip(found[name]["mean_irradiance"], material["mean_irradiance"]):
-                self.assert_close(f, e, 6e-3, name)  # light of emitters with textures: half a percent in a channel
+                self.assert_close(f, e, 1e-2, name)  # rows are known to 1 %, and the lamp has few
 
 
 if __name__ == "__main__":
