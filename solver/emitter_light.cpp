@@ -23,6 +23,7 @@ namespace {
 constexpr std::uint32_t kPatchPoints = 16; ///< of one batch
 constexpr std::uint32_t kPatchRays = 16;   ///< of one point
 constexpr int kMostBatches = 4;
+constexpr std::size_t kManyPatches = 30'000; ///< of so many each takes one batch: no one sees the noise of one
 constexpr int kPointBatches = 8;
 constexpr double kPatchError = 3e-3; ///< relative, of a patch's mean: no more batches
 constexpr double kEven = 0.1;        ///< relative: points of a patch that vary less, and all see the same, are enough
@@ -381,6 +382,7 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
     const std::size_t groups = materials().size();
     if (byMaterial) byMaterial->assign(groups, result);
     if (empty()) return result;
+    const int mostBatches = mesh.size() > kManyPatches ? 1 : kMostBatches;
     const auto ofPatch = [&](std::size_t patch, std::vector<RgbSum>& sums) {
         if (mesh.isHidden(patch)) return;
         const std::uint64_t key = keyOf(static_cast<std::uint32_t>(patch), 0x454D4950, seed_);
@@ -393,7 +395,7 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
         std::vector<RgbSum> batch(groups);
         const auto enough = [&] {
             const double mean = sum(batches.mean());
-            if (batches.count() == kMostBatches) return true;
+            if (batches.count() == mostBatches) return true;
             if (batches.count() > 1) return sum(batches.carefulError()) <= kPatchError * mean;
             const double variance = squares / kPatchPoints - mean * mean;
             return !receiver.seesParts() && variance <= kEven * kEven * mean * mean;
