@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kQuadratureError = 5e-4; ///< of a row's sum, by the rules of PatchBlocks
 /// The mean error of the share that n rays find visible where some are blocked is about kSpread n^−kRate: the rays of a pair
-/// are spread evenly over both patches. Found on rooms; wrong guesses are mended by further rounds.
+/// are spread evenly over both patches. The rate is that of an edge across four dimensions, the factor a guess from the Cornell
+/// box; both only choose the first number of rays, and further rounds mend what they miss.
 constexpr double kSpread = 0.12;
 constexpr double kRate = 0.625;
 constexpr double kAgreement = 1e-3;   ///< of two rules, so that the finer one is taken to be right to a part of it
@@ -267,7 +268,7 @@ private:
         double target = 1.0;
         if (lineRemainder > 0.0) {
             const auto n = static_cast<double>(kRemainderLines);
-            // Lines are spread evenly: a quarter of the variance of independent ones, found on rooms.
+            // Lines are spread evenly: taken to have a quarter of the variance of independent ones.
             const double lineVariance = 0.25 * std::max(lineFront_ * lineRemainder, 1.0 / n) / n;
             const double pairVariance = variance_ + kQuadratureError * kQuadratureError;
             target = std::min(1.0, (sum_ * lineVariance + lineFront_ * pairVariance) / (lineVariance + pairVariance));

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t kPatchPoints = 16; ///< of one batch
 constexpr std::uint32_t kPatchRays = 16;   ///< of one point
 constexpr int kMostBatches = 4;
-constexpr std::size_t kManyPatches = 30'000; ///< of so many each takes one batch: no one sees the noise of one
+constexpr std::size_t kManyPatches = 30'000; ///< of so many each takes one batch, to bound the time
 constexpr int kPointBatches = 8;
 constexpr double kPatchError = 3e-3; ///< relative, of a patch's mean: no more batches
 constexpr double kEven = 0.1;        ///< relative: points of a patch that vary less, and all see the same, are enough

@@ -99,7 +99,7 @@ class ThePage(CompareTest):
                         if row["method"] == method["name"] and float(row["effort"]) == effort["effort"]]
                 self.assert_close(effort["relative_rms"]["mean"], sum(same) / len(same), 1e-6)
             coarse, fine = (effort["relative_rms"]["mean"] for effort in method["efforts"])
-            # The closed forms' own errors are a hundredth of the reference's, which is what both show.
+            # What closed forms show is the error of the reference, to which their own adds next to nothing.
             self.assertLess(fine, coarse * (1.01 if method["name"] == "closed-form" else 1), method["name"])
             self.assertIn(method["name"], self.done.stdout)
 
