@@ -146,7 +146,7 @@ double edgePairIntegral(const Segment& a, const Segment& b, Care care) {
     if (glm::dot(sine, sine) < straight * straight) return parallelEdgesIntegral(a, b);
     const auto integrand = [&](double s) { return logIntegral(a.at(s), b); };
     // Edges that are perpendicular but for rounding count for so little that a rough value will do.
-    if (care == Care::Single && std::abs(glm::dot(a.direction, b.direction)) < 10.0 * kSingleRounding)
+    if (care != Care::Full && std::abs(glm::dot(a.direction, b.direction)) < 10.0 * kSingleRounding)
         return gauss<double, 7>::integrate(integrand, 0.0, a.length);
     std::array<double, 5> cuts{};
     std::size_t count = 1;
@@ -162,7 +162,7 @@ double edgePairIntegral(const Segment& a, const Segment& b, Care care) {
         const double near = std::min(distanceToSegment(a.at(cuts[k]), b), distanceToSegment(a.at(cuts[k + 1]), b));
         if (near > kFar * length) {
             sum += gauss<double, 8>::integrate(integrand, cuts[k], cuts[k + 1]);
-        } else if (near > kNear * length) {
+        } else if (near > kNear * length || care == Care::Rough) {
             sum += gauss<double, 16>::integrate(integrand, cuts[k], cuts[k + 1]);
         } else {
             static tanh_sinh<double> endpointSingular; // thread-safe, though Boost 1.74 does not say const

@@ -26,8 +26,9 @@ double pointToVisiblePolygon(const glm::dvec3& point, const glm::dvec3& normal, 
 
 /// How carefully a contour integral is computed.
 enum class Care {
-    Full,  ///< to about 1e-12 of its value or 1e-15 of the smaller area, whichever is more
-    Single ///< for corners rounded to single precision, many times as fast: to about 1e-6
+    Full,   ///< to about 1e-12 of its value or 1e-15 of the smaller area, whichever is more
+    Single, ///< for corners rounded to single precision, many times as fast: to about 1e-6
+    Rough   ///< the same, to about 1e-4
 };
 
 /// A_from · F_from,to, in m²: the same in both directions.

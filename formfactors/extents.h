@@ -28,6 +28,8 @@ public:
     void add(const glm::dvec3& point, std::span<const glm::dvec3> directions);
     void add(const Extents& other);
 
+    glm::dvec3 centre() const { return 0.5 * (lower_ + upper_); } //!< of the box along the axes
+
     /// Lowest and highest point over a plane, whose normal has unit length: exact for a plane with a direction of the list,
     /// otherwise bounds.
     std::array<double, 2> heights(const Plane& plane, std::span<const glm::dvec3> directions) const;

@@ -69,12 +69,12 @@ std::array<double, kLanes> exchangeWithCluster(std::span<const WeightedPoint> fr
     return result;
 }
 
-double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to,
-                      const Plane& toPlane) {
+double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
+                      Care care) {
     const glm::dvec3 centreFrom = from.centre(), centreTo = to.centre();
     const double reach = radius(from, centreFrom) + radius(to, centreTo);
     const int order = gaussOrder(reach / glm::distance(centreFrom, centreTo));
-    if (order == 0) return exchangeArea(from.points(), to.points(), Care::Single);
+    if (order == 0) return exchangeArea(from.points(), to.points(), care);
     static thread_local std::vector<WeightedPoint> pointsFrom, pointsTo;
     pointsFrom.clear();
     pointsTo.clear();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactors/closed_form.h"
 #include "formfactors/convex_polygon.h"
 #include "formfactors/patch_clusters.h"
 #include "formfactors/quadrature.h"
@@ -21,7 +22,8 @@ std::array<double, PatchClusters::kLanes> exchangeWithCluster(std::span<const We
                                                               const PatchClusters::Cluster& cluster, int order);
 
 /// A_from · F_from,to in m² of two convex polygons that lie in front of each other's planes and that nothing stands between:
-/// by Gauss's rule, or exactly where they are close.
-double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane);
+/// by Gauss's rule, or by the contour integral where they are close.
+double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
+                      Care care = Care::Single);
 
 } // namespace lambert

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 namespace lambert {
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int kLanes = PatchBlocks::kLanes;
 constexpr int kPoints = PatchBlocks::kPoints;
+constexpr std::size_t kAlone = 8; ///< polygons of so many patches share no block with others
 
 /// Of the sum of two radii to the distance. A rule of order n errs by about the 2n-th power: see gaussOrder.
 constexpr float kMidpointRatio = 0.03F;
@@ -42,6 +45,25 @@ std::vector<WeightedPoint> gaussPoints(const PatchMesh& mesh, std::size_t patch)
     std::vector<WeightedPoint> points;
     appendGaussPoints(cornersOf(mesh, patch), 2, points);
     return points;
+}
+
+/// Orders patches so that every 16 of them lie close together.
+void groupNeighbours(const PatchMesh& mesh, std::span<std::uint32_t> patches) {
+    if (patches.size() <= kLanes) return;
+    glm::vec3 lower(1e30F), upper(-1e30F);
+    for (const std::uint32_t patch : patches) {
+        lower = glm::min(lower, mesh.centroid[patch]);
+        upper = glm::max(upper, mesh.centroid[patch]);
+    }
+    const glm::vec3 extent = upper - lower;
+    const int axis = extent.x >= std::max(extent.y, extent.z) ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t half = std::max<std::size_t>(patches.size() / 2 / kLanes, 1) * kLanes;
+    std::nth_element(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(half), patches.end(),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         return std::pair(mesh.centroid[a][axis], a) < std::pair(mesh.centroid[b][axis], b);
+                     });
+    groupNeighbours(mesh, patches.first(half));
+    groupNeighbours(mesh, patches.subspan(half));
 }
 
 /// Kinds, and the factors by the rule of one point.
@@ -124,46 +146,66 @@ PatchBlocks::Viewer::Viewer(const glm::vec3& point, const glm::vec3& unitNormal)
     weights.fill(1.0F / kPoints);
 }
 
-PatchBlocks::PatchBlocks(const PatchMesh& mesh) {
-    blocks_.reserve((mesh.size() + kLanes - 1) / kLanes);
-    for (std::size_t first = 0; first < mesh.size(); first += kLanes) {
-        Block& block = blocks_.emplace_back();
-        block.first = static_cast<std::uint32_t>(first);
-        block.count = static_cast<std::uint32_t>(std::min<std::size_t>(kLanes, mesh.size() - first));
-        glm::vec3 lower(1e30F), upper(-1e30F);
-        block.flat = true;
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const bool used = lane < block.count;
-            const std::size_t patch = first + (used ? lane : 0);
-            const glm::vec3 c = mesh.centroid[patch];
-            const glm::vec3 n = mesh.normal[patch];
-            block.centreX[lane] = c.x;
-            block.centreY[lane] = c.y;
-            block.centreZ[lane] = c.z;
-            block.normalX[lane] = n.x;
-            block.normalY[lane] = n.y;
-            block.normalZ[lane] = n.z;
-            block.radius[lane] = radiusOf(mesh, patch);
-            const auto gauss = gaussPoints(mesh, patch);
-            double area = 0.0;
-            for (std::size_t k = 0; k < kPoints; ++k) {
-                block.pointX[k][lane] = static_cast<float>(gauss[k].point.x);
-                block.pointY[k][lane] = static_cast<float>(gauss[k].point.y);
-                block.pointZ[k][lane] = static_cast<float>(gauss[k].point.z);
-                block.weight[k][lane] = used ? static_cast<float>(gauss[k].weight) : 0.0F;
-                area += gauss[k].weight;
-            }
-            block.area[lane] = used ? static_cast<float>(area) : 0.0F;
-            for (int k = 0; k < mesh.cornerCount(patch); ++k) {
-                lower = glm::min(lower, mesh.position(patch, k));
-                upper = glm::max(upper, mesh.position(patch, k));
-            }
-            block.flat =
-                block.flat && mesh.polygon[patch] == mesh.polygon[first] && mesh.isBack(patch) == mesh.isBack(first);
-        }
-        block.centre = 0.5F * (lower + upper);
-        block.reach = 0.5F * glm::distance(lower, upper);
+PatchBlocks::PatchBlocks(const PatchMesh& mesh) : blockOf_(mesh.size()) {
+    const auto sameSurface = [&](std::uint32_t a, std::uint32_t b) {
+        return mesh.polygon[a] == mesh.polygon[b] && mesh.isBack(a) == mesh.isBack(b);
+    };
+    std::vector<std::uint32_t> order(mesh.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::size_t begun = 0; // patches from here on are in no block yet
+    const auto fill = [&](std::size_t end) {
+        for (; begun < end; begun += kLanes)
+            addBlock(mesh, std::span(order).subspan(begun, std::min<std::size_t>(kLanes, end - begun)));
+        begun = end;
+    };
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        while (last < order.size() && sameSurface(order[first], order[last])) ++last;
+        if (last - first < kAlone) continue;
+        fill(first);
+        groupNeighbours(mesh, std::span(order).subspan(first, last - first));
+        fill(last);
     }
+    fill(order.size());
+}
+
+void PatchBlocks::addBlock(const PatchMesh& mesh, std::span<const std::uint32_t> patches) {
+    Block& block = blocks_.emplace_back();
+    block.count = static_cast<std::uint32_t>(patches.size());
+    glm::vec3 lower(1e30F), upper(-1e30F);
+    block.flat = true;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const bool used = lane < patches.size();
+        const std::uint32_t patch = used ? patches[lane] : patches.back();
+        block.patch[lane] = patch;
+        blockOf_[patch] = static_cast<std::uint32_t>(blocks_.size() - 1);
+        const glm::vec3 c = mesh.centroid[patch];
+        const glm::vec3 n = mesh.normal[patch];
+        block.centreX[lane] = c.x;
+        block.centreY[lane] = c.y;
+        block.centreZ[lane] = c.z;
+        block.normalX[lane] = n.x;
+        block.normalY[lane] = n.y;
+        block.normalZ[lane] = n.z;
+        block.radius[lane] = radiusOf(mesh, patch);
+        const auto gauss = gaussPoints(mesh, patch);
+        double area = 0.0;
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            block.pointX[k][lane] = static_cast<float>(gauss[k].point.x);
+            block.pointY[k][lane] = static_cast<float>(gauss[k].point.y);
+            block.pointZ[k][lane] = static_cast<float>(gauss[k].point.z);
+            block.weight[k][lane] = used ? static_cast<float>(gauss[k].weight) : 0.0F;
+            area += gauss[k].weight;
+        }
+        block.area[lane] = used ? static_cast<float>(area) : 0.0F;
+        for (int k = 0; k < mesh.cornerCount(patch); ++k) {
+            lower = glm::min(lower, mesh.position(patch, k));
+            upper = glm::max(upper, mesh.position(patch, k));
+        }
+        block.flat = block.flat && mesh.polygon[patch] == mesh.polygon[patches[0]] &&
+                     mesh.isBack(patch) == mesh.isBack(patches[0]);
+    }
+    block.centre = 0.5F * (lower + upper);
+    block.reach = 0.5F * glm::distance(lower, upper);
 }
 
 bool PatchBlocks::factors(const Viewer& viewer, const Block& block, float tolerance, Factors& result) {

@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lambert {
 
-/// The patches of a mesh in blocks of 16 that follow each other, laid out for vector code.
+/// The patches of a mesh in blocks of up to 16 neighbours, laid out for vector code. Where a polygon has many patches, its blocks hold
+/// no others.
 class PatchBlocks {
 public:
     static constexpr int kLanes = 16;
@@ -25,7 +27,8 @@ public:
         float weight[kPoints][kLanes]; ///< m²
         glm::vec3 centre;              ///< of a sphere around all corners
         float reach;                   ///< its radius
-        std::uint32_t first, count;    ///< patches
+        std::uint32_t patch[kLanes];   ///< the last one is repeated in lanes without
+        std::uint32_t count;           ///< lanes with a patch
         bool flat;                     ///< all lie in the plane of the first, and face the same way
     };
 
@@ -55,12 +58,16 @@ public:
     explicit PatchBlocks(const PatchMesh& mesh);
 
     const std::vector<Block>& blocks() const { return blocks_; }
+    std::uint32_t blockOf(std::uint32_t patch) const { return blockOf_[patch]; } ///< into blocks()
     /// Form factors from the viewer to a block's patches; false if the viewer sees none of them. What is nearer to a plane than
     /// `tolerance` (metres) counts as in it.
     static bool factors(const Viewer& viewer, const Block& block, float tolerance, Factors& result);
 
 private:
+    void addBlock(const PatchMesh& mesh, std::span<const std::uint32_t> patches);
+
     std::vector<Block> blocks_;
+    std::vector<std::uint32_t> blockOf_;
 };
 
 } // namespace lambert

@@ -25,8 +25,9 @@ constexpr double kQuadratureError = 5e-4; ///< of a row's sum, by the rules of P
 /// box; both only choose the first number of rays, and further rounds mend what they miss.
 constexpr double kSpread = 0.12;
 constexpr double kRate = 0.625;
-constexpr double kAgreement = 1e-3;   ///< of two rules, so that the finer one is taken to be right to a part of it
-constexpr double kSmallFactor = 1e-6; ///< rules are right enough
+constexpr double kAgreement = 1e-3;       ///< of two rules, so that the finer one is taken to be right to a part of it
+constexpr double kSmallFactor = 1e-6;     ///< rules are right enough
+constexpr std::size_t kMostBlocks = 4096; ///< of which pairs are tested, to know what is hidden before any ray
 constexpr int kMostRounds = 4;
 constexpr std::uint32_t kMostRaysPerPair = 1U << 20;
 constexpr std::uint32_t kRunLength = 16;  ///< neighbouring pairs that are judged together
@@ -78,7 +79,8 @@ double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const Con
     if (gap > 0.4 || mean < kSmallFactor * smaller * smaller) return mean;
     // Neighbours that share an edge are smooth too, others need the contour integral.
     const double finer = meanOverPoints(outer, normal, inner, 6);
-    return std::abs(mean - finer) < kAgreement * finer ? finer : convexExchange(from, fromPlane, to, toPlane);
+    return std::abs(mean - finer) < kAgreement * finer ? finer
+                                                       : convexExchange(from, fromPlane, to, toPlane, Care::Rough);
 }
 
 } // namespace
@@ -86,10 +88,27 @@ double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const Con
 /// The computation of one row.
 class VisibilitySampling::Row {
 public:
+    struct ClearPair {
+        std::uint32_t patch;
+        float factor;
+    };
+    /// Keeps its memory from row to row.
+    struct Scratch {
+        std::vector<PairSample> pairs;
+        std::vector<ClearPair> clear;
+    };
+
     Row(const VisibilitySampling& method, const PatchBlocks::Viewer& viewer, const PatchShape& shape,
-        std::uint32_t index, std::uint32_t patch, std::vector<PairSample>& pairs)
-        : method_(method), viewer_(viewer), shape_(shape), index_(index), patch_(patch), pairs_(pairs) {
+        std::uint32_t index, std::uint32_t patch, Scratch& scratch)
+        : method_(method),
+          viewer_(viewer),
+          shape_(shape),
+          index_(index),
+          patch_(patch),
+          pairs_(scratch.pairs),
+          clear_(scratch.clear) {
         pairs_.clear();
+        clear_.clear();
         if (patch_ != kNone) {
             polygon_ = polygonOf(method.mesh_, patch_);
             plane_ = planeOf(method.mesh_, patch_);
@@ -115,15 +134,24 @@ public:
 private:
     void findPairs() {
         PatchBlocks::Factors factors;
-        for (const PatchBlocks::Block& block : method_.blocks_.blocks()) {
+        const std::vector<PatchBlocks::Block>& blocks = method_.blocks_.blocks();
+        for (std::uint32_t b = 0; b < blocks.size(); ++b) {
+            const PatchBlocks::Block& block = blocks[b];
             if (!PatchBlocks::factors(viewer_, block, method_.tolerance_, factors)) continue;
+            const Blocking known = visibilityOf(b);
+            if (known == Blocking::Hidden) continue;
             for (std::uint32_t lane = 0; lane < block.count; ++lane) {
                 if (factors.kind[lane] == PatchBlocks::kUnseen) continue;
-                const std::uint32_t patch = block.first + lane;
+                const std::uint32_t patch = block.patch[lane];
                 const bool near = factors.kind[lane] == PatchBlocks::kNear;
                 double factor = near ? nearFactor(patch) : static_cast<double>(factors.factor[lane]);
                 if (!method_.mesh_.opacity.empty()) factor *= static_cast<double>(method_.mesh_.opacity[patch]);
                 if (!(factor > 0.0)) continue;
+                if (known == Blocking::Clear) {
+                    clear_.push_back({patch, static_cast<float>(factor)});
+                    clearSum_ += static_cast<double>(clear_.back().factor);
+                    continue;
+                }
                 PairSample pair;
                 pair.patch = patch;
                 pair.weighted = near;
@@ -131,6 +159,11 @@ private:
                 pairs_.push_back(pair);
             }
         }
+    }
+
+    Blocking visibilityOf(std::uint32_t block) const {
+        if (patch_ == kNone || !method_.known_) return Blocking::Unknown;
+        return method_.known_->between(polygon_, plane_, method_.blocks_.blockOf(patch_), block);
     }
 
     double nearFactor(std::uint32_t patch) const {
@@ -253,7 +286,8 @@ private:
 
     /// Σ_j F_ij, and what its halves by even and odd rays tell of its error.
     void assess() {
-        sum_ = variance_ = error_ = 0.0;
+        sum_ = clearSum_;
+        variance_ = error_ = 0.0;
         for (const PairSample& pair : pairs_) {
             const double factor = pair.factor;
             sum_ += factor * pair.visibleShare();
@@ -282,16 +316,17 @@ private:
             const double deviation = 0.5 * factor * (pair.half(0) - pair.half(1));
             return std::clamp(factor * pair.visibleShare() + perVariance * deviation * deviation, 0.0, factor);
         };
-        double sum = 0.0;
+        double sum = clearSum_;
         for (const PairSample& pair : pairs_) sum += corrected(pair);
         const double rescale = sum > 0.0 ? target / sum : 0.0;
         double total = 0.0;
-        for (const PairSample& pair : pairs_) {
-            const double value = rescale * corrected(pair);
-            if (!(value > 0.0)) continue;
-            accumulator.add(pair.patch, value);
+        const auto add = [&](std::uint32_t patch, double value) {
+            if (!(value > 0.0)) return;
+            accumulator.add(patch, value);
             total += value;
-        }
+        };
+        for (const ClearPair& pair : clear_) add(pair.patch, rescale * static_cast<double>(pair.factor));
+        for (const PairSample& pair : pairs_) add(pair.patch, rescale * corrected(pair));
         const double remainder = std::max(0.0, 1.0 - total);
         if (lineRemainder > 0.0) {
             if (lineBack_ > 0.0) accumulator.add(accumulator.back(), remainder * lineBack_ / lineRemainder);
@@ -313,8 +348,10 @@ private:
     std::uint32_t patch_; ///< kNone: a point
     ConvexPolygon polygon_;
     Plane plane_;
-    double area_ = 0.0; ///< m², holes included
-    std::vector<PairSample>& pairs_;
+    double area_ = 0.0;              ///< m², holes included
+    std::vector<PairSample>& pairs_; ///< whose visibility rays are to find
+    std::vector<ClearPair>& clear_;  ///< what nothing stands before
+    double clearSum_ = 0.0;
     double lineFront_ = 0.0, lineBack_ = 0.0, lineOut_ = 0.0; ///< shares of the lines
     double sum_ = 0.0, variance_ = 0.0, error_ = 0.0;
 };
@@ -329,6 +366,8 @@ VisibilitySampling::VisibilitySampling(const PatchMesh& mesh, const RayCaster& r
       blocks_(mesh) {
     if (!(options.error >= 1e-5 && options.error <= 0.5))
         throw UsageError(fmt::format("form-factor error: found {}, allowed are 1e-5 to 0.5", options.error));
+    if (blocks_.blocks().size() <= kMostBlocks)
+        known_.emplace(rays.scene(), mesh, blocks_, static_cast<double>(tolerance_));
     shapes_.reserve(mesh.size());
     for (std::size_t patch = 0; patch < mesh.size(); ++patch) shapes_.emplace_back(rays, mesh, patch);
 }
@@ -339,15 +378,15 @@ std::uint64_t VisibilitySampling::raysPerRow() const {
 }
 
 void VisibilitySampling::row(std::uint32_t patch, RowAccumulator& accumulator) const {
-    thread_local std::vector<PairSample> pairs; // keeps its memory from row to row
-    Row(*this, PatchBlocks::Viewer(mesh_, patch), shapes_[patch], patch, patch, pairs)
+    thread_local Row::Scratch scratch;
+    Row(*this, PatchBlocks::Viewer(mesh_, patch), shapes_[patch], patch, patch, scratch)
         .run(lines_.lines(patch), accumulator);
 }
 
 void VisibilitySampling::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
                                   RowAccumulator& accumulator) const {
-    thread_local std::vector<PairSample> pairs;
-    Row(*this, PatchBlocks::Viewer(origin, normal), PatchShape(origin, normal), index, kNone, pairs)
+    thread_local Row::Scratch scratch;
+    Row(*this, PatchBlocks::Viewer(origin, normal), PatchShape(origin, normal), index, kNone, scratch)
         .run(lines_.lines(origin, normal, index), accumulator);
 }
 

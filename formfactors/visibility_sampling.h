@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactors/block_visibility.h"
 #include "formfactors/form_factor_method.h"
 #include "formfactors/local_lines.h"
 #include "formfactors/patch_blocks.h"
@@ -9,6 +10,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lambert {
@@ -22,6 +24,8 @@ struct VisibilitySamplingOptions {
 /// Form factors as closed form × visibility: what a patch would see of each other one if nothing stood between is computed (to
 /// about 1e-3, for neighbours to 1e-6), and rays between points of both find the share that is visible. Unlike what one viewpoint
 /// sees, neither needs patches that are small against their distances, nor pixels that are small against the patches.
+///
+/// Of blocks of patches that the scene hides wholly or not at all from each other this is found without rays, see BlockVisibility.
 ///
 /// Every row knows its error. A first few rays per pair tell where some are blocked and some are not among neighbouring
 /// pairs; there, and in proportion to what is at stake, as many more are traced as bring Σ_j |ΔF_ij| below the error asked for. The
@@ -54,6 +58,7 @@ private:
     float tolerance_; ///< metres; what is nearer to a plane counts as in it
     LocalLines lines_;
     PatchBlocks blocks_;
+    std::optional<BlockVisibility> known_; ///< where it does not take too long
     std::vector<PatchShape> shapes_;
     mutable std::atomic<std::uint64_t> raysTraced_{0}, rowsDone_{0};
 };

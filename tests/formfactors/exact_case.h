@@ -2,6 +2,7 @@
 
 #include "formfactors/closed_form.h"
 #include "formfactors/form_factor_matrix.h"
+#include "formfactors/form_factor_method.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
@@ -11,6 +12,14 @@
 #include <vector>
 
 namespace lambert {
+
+inline FormFactorRow rowOf(const FormFactorMethod& method, std::uint32_t patch) {
+    RowAccumulator accumulator(method.patchCount());
+    method.row(patch, accumulator);
+    FormFactorRow row;
+    accumulator.take(row);
+    return row;
+}
 
 /// A scene whose polygons are the patches, with the exact factors of all pairs, fully visible.
 struct ExactCase {

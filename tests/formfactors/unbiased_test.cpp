@@ -12,14 +12,6 @@
 namespace lambert {
 namespace {
 
-FormFactorRow rowOf(const FormFactorMethod& method, std::uint32_t patch) {
-    RowAccumulator accumulator(method.patchCount());
-    method.row(patch, accumulator);
-    FormFactorRow row;
-    accumulator.take(row);
-    return row;
-}
-
 constexpr std::array kSamplers{Sampler::Random, Sampler::Stratified, Sampler::Halton, Sampler::Sobol};
 
 // z-test of the mean over seeds, per pair, with the seeds' own standard error. Two scenes × 30 pairs × 4 samplers = 240

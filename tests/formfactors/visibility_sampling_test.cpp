@@ -11,14 +11,6 @@
 namespace lambert {
 namespace {
 
-FormFactorRow rowOf(const FormFactorMethod& method, std::uint32_t patch) {
-    RowAccumulator accumulator(method.patchCount());
-    method.row(patch, accumulator);
-    FormFactorRow row;
-    accumulator.take(row);
-    return row;
-}
-
 /// The unit room with a box that hides parts of the walls from each other.
 Scene roomWithBox() {
     Scene scene = closedBox(kCube6);
