@@ -31,7 +31,6 @@ class EmitterLight {
 public:
     /// `rays`, of the scene of `mesh`, must outlive it; `mesh` need not.
     EmitterLight(const RayCaster& rays, const PatchMesh& mesh, std::uint64_t seed);
-    ~EmitterLight();
 
     bool empty() const { return tree_.triangles().empty(); } //!< nothing emits
     /// The materials that emit, into Scene::materials, ascending.
@@ -49,8 +48,6 @@ public:
                               std::uint32_t rays) const;
 
 private:
-    class Receiver;
-
     const RayCaster& rays_;
     std::uint64_t seed_;
     EmitterTree tree_;
