@@ -32,8 +32,10 @@ class TexturedRoom(ProgramTest):
         self.assertEqual(set(found), set(expected))
         for name, material in expected.items():
             self.assert_close(found[name]["area"], material["area"], 1e-5, name)
+            # Over seeds, channels differ by up to .06 % (standard deviation); of small things with few patches by 1.2 %.
+            tolerance = 2e-3 if material["area"] > 0.5 else 3e-2
             for f, e in zip(found[name]["mean_irradiance"], material["mean_irradiance"]):
-                self.assert_close(f, e, 1e-2, name)  # rows are known to 1 %, and the lamp has few
+                self.assert_close(f, e, tolerance, name)
 
 
 if __name__ == "__main__":
