@@ -11,52 +11,13 @@ minutes to hours of processor time.
 """
 import argparse
 import json
-import math
 import os
-import resource
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from scene_bakes import Bakes, INPUT, NoReport, ROOT, materials_of, mean_of, relative_error, scenes_of
+
 PRESETS = ("preview", "normal", "high")
-FORMATS = (".gltf", ".glb", ".obj", ".mgf", ".ply")
-MISSED, INPUT = 1, 3  # of the program's exit codes
-
-
-def scenes_of(folder):
-    """One file per scene: those of one name are one scene."""
-    found = {}
-    for path in sorted(folder.iterdir(), key=lambda p: (p.stem, FORMATS.index(p.suffix) if p.suffix in FORMATS else 99)):
-        if path.suffix in FORMATS:
-            found.setdefault(path.stem, path)
-    return list(found.values())
-
-
-def materials_of(report):
-    """Name -> (area, mean irradiance); materials of one name count together."""
-    result = {}
-    for material in report["materials"]:
-        area, mean = result.get(material["name"], (0.0, [0.0, 0.0, 0.0]))
-        whole = area + material["area"]
-        light = [(area * a + material["area"] * b) / whole for a, b in zip(mean, material["mean_irradiance"])]
-        result[material["name"]] = (whole, light)
-    return result
-
-
-def relative_error(found, expected):
-    """Of two such tables: sqrt(sum A |E - R|^2) / sqrt(sum A |R|^2), with the areas of the second."""
-    difference = light = 0.0
-    for name, (area, reference) in expected.items():
-        _, mean = found.get(name, (0.0, [0.0, 0.0, 0.0]))
-        difference += area * sum((a - b) ** 2 for a, b in zip(mean, reference))
-        light += area * sum(b * b for b in reference)
-    return math.sqrt(difference / light) if light > 0 else 0.0
-
-
-def mean_of(one, other):
-    return {name: (area, [(a + b) / 2 for a, b in zip(light, other[name][1])]) for name, (area, light) in one.items()}
 
 
 def worse_presets(errors, own):
@@ -64,40 +25,13 @@ def worse_presets(errors, own):
     return [PRESETS[k] for k in range(1, len(errors)) if errors[k] > min(errors[:k]) + 2 * own]
 
 
-class Bakes:
-    def __init__(self, program, options):
-        self.program, self.options = program, options
-
-    def report(self, scene, *options):
-        """The JSON report, with `cpu` seconds; None if the scene cannot be baked (no light)."""
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "report.json"
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            done = subprocess.run([self.program, "bake", scene, "--quiet", "--json", path, *options, *self.options],
-                                  stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            if done.returncode == INPUT:
-                print(f"{Path(scene).name}: left out: {done.stderr.strip().splitlines()[-1]}", flush=True)
-                return None
-            if done.returncode not in (0, MISSED):
-                sys.exit(f"{scene}: {done.stderr.strip()}")
-            report = json.loads(path.read_text(encoding="utf-8"))
-        report["cpu"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        return report
-
-
 def ladder(bakes, scene, finer):
     """Errors and CPU seconds of the presets, and the reference's own error."""
-    reports = []
-    for preset in PRESETS:
-        report = bakes.report(scene, "--quality", preset)
-        if report is None:
-            return None
-        reports.append(report)
+    reports = [bakes.report(scene, "--quality", preset) for preset in PRESETS]
     patches = str(round(finer * reports[-1]["patches"]))
     halves = [materials_of(bakes.report(scene, "--quality", "high", "--solver", "stochastic", "--patches", patches,
                                         "--seed", str(seed))) for seed in (1, 2)]
-    reference = mean_of(*halves)
+    reference = mean_of(halves)
     errors = [relative_error(materials_of(report), reference) for report in reports]
     own = relative_error(halves[0], halves[1]) / 2
     return {"scene": Path(scene).name, "errors": errors, "own_error": own, "worse": worse_presets(errors, own),
@@ -128,10 +62,15 @@ def main():
     print(f"{'scene':<28}{names}{'reference':>13}{'CPU s of the three':>27}", flush=True)
     rows = []
     for scene in arguments.scenes or scenes_of(ROOT / "data"):
-        row = ladder(bakes, scene, arguments.finer)
-        if row:
-            rows.append(row)
-            print(row_text(row), flush=True)
+        try:
+            row = ladder(bakes, scene, arguments.finer)
+        except NoReport as error:
+            if error.code != INPUT:  # of which no light is the most likely
+                sys.exit(f"{scene}: {error}")
+            print(f"{scene.name:<28} left out: {error}", flush=True)
+            continue
+        rows.append(row)
+        print(row_text(row), flush=True)
     if arguments.json:
         arguments.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
     return 1 if any(row["worse"] for row in rows) else 0
