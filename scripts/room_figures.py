@@ -1,102 +1,124 @@
 #!/usr/bin/env python3
-"""Prints how right default bakes are, as a table: per-material irradiance against random walks on the same patches.
+"""Prints how right default bakes are, as a table: the irradiance of materials against random walks on the same patches.
 
-    scripts/room_figures.py [--program FILE] [--options "--method hemicube"] [--walk-error .002] SCENE...
+    scripts/room_figures.py [--program FILE] [--options "--quality high"] [--walk-error .002] [--walk-seconds 60] [--rows 40]
+                            [--done FILE] [SCENE...]
 
-Columns: the area-weighted RMS of the difference over the RMS of the irradiance, per material and channel, and the walks' own
-standard error of it; what the mesh itself does, from walks on patches of a quarter of the area; the imbalance of the energy
-before any repair; the mean error that rows of form factors state for themselves; CPU seconds of bake and walk.
-A material's mean is over far more rays than a patch's, so that its standard error is well below --walk-error.
+Without scenes: those of data/ and of LAMBERT_SCENES but the conference room. Columns:
+
+  error %     of materials' mean irradiance: area-weighted RMS over materials and channels of the difference from the walks', over
+              the RMS of the walks'
+  walks %     standard error of the walks in the same measure, from WALKS seeds; as many walks as bring it to --walk-error, in at
+              most --walk-seconds of CPU time or so
+  mesh %      the same difference of walks on four times the patches from those on the bake's; it holds the noise of both
+  imbalance % of energy, by the form factors as they were computed, before any repair
+  correction  the largest, as a share, that --repair makes to these factors, and in brackets how much it changes a row in the mean;
+              "large": there was no memory for it
+  rows state  the mean row error that the factors state for themselves
+  by rays     between what that error lies by 1e5 independent rays on each of --rows random rows, their own noise taken off; in brackets the
+              standard error of the lower bound (row_check.py says how)
+  CPU s       of the bake; then error and CPU seconds of the same with --method hemicube, the former default; last those of the walks
+
+A scene that cannot be baked has a row that says why. --done leaves out scenes that have a row in a file of earlier output.
 """
 import argparse
-import json
-import math
 import os
-import resource
 import shlex
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-# Scenes without lights of their own, or in other units.
-SCENE_OPTIONS = {
-    "cornell_pcg.obj": ["--unit", ".001"],
-    "cornell_pcg_split.obj": ["--unit", ".001"],
-    "window_room.gltf": ["--sky", "1,1,1"],
-}
+from row_check import RowCheck
+from scene_bakes import Bakes, NoReport, ROOT, all_scenes, materials_of, mean_of, mesh_options, relative_error, standard_error
+
+WALKS = 4  # independent sets of them
+FIRST_WALKS, MOST_WALKS = 1e6, 4e9
+HEADER = ["scene", "patches", "method", "error %", "walks %", "mesh %", "imbalance %", "correction", "rows state", "by rays", "CPU s",
+          "hemicube error %", "hemicube CPU s", "walks CPU s"]
 
 
-def bake(program, scene, *options):
-    """The JSON report and the CPU seconds of a bake; what went wrong instead of a report."""
-    with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / "report.json"
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run([program, "bake", str(scene), "--json", str(report), "--quiet",
-                               *SCENE_OPTIONS.get(Path(scene).name, []), *map(str, options)],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        if done.returncode not in (0, 1) or not report.exists():
-            return (done.stderr.strip().splitlines() or ["no word"])[-1], seconds
-        return json.loads(report.read_text(encoding="utf-8")), seconds
+class Walks:
+    """The light of materials by random walks: `light`, its standard `error`, `walks` of each seed, `patches` and `cpu` seconds."""
+
+    def __init__(self, bakes, scene, mesh, walks, first_seed=1):
+        reports = [bakes.report(scene, "--solver", "random-walk", "--rays", int(walks), *mesh, "--seed", first_seed + k)
+                   for k in range(WALKS)]
+        tables = [materials_of(report) for report in reports]
+        self.light, self.error, self.walks = mean_of(tables), standard_error(tables), walks
+        self.patches, self.cpu = reports[0]["patches"], sum(report["cpu"] for report in reports)
 
 
-def material_rms(report, reference):
-    """sqrt(Σ A |E − E'|² / Σ A |E'|²) over materials and channels."""
-    other = {m["name"]: m for m in reference["materials"]}
-    squares = norm = 0.0
-    for material in report["materials"]:
-        if material["name"] not in other:
-            continue
-        pairs = zip(material["mean_irradiance"], other[material["name"]]["mean_irradiance"])
-        for e, right in pairs:
-            squares += material["area"] * (e - right) ** 2
-            norm += material["area"] * right ** 2
-    return math.sqrt(squares / norm) if norm > 0 else math.nan
+def exact_walks(bakes, scene, mesh, target, seconds):
+    """As many as the error wants, or the time allows."""
+    walks = Walks(bakes, scene, mesh, FIRST_WALKS)
+    wanted = 1.5 * (walks.error / target) ** 2  # the error of four seeds is itself only known to a third or so
+    allowed = min(seconds / walks.cpu, MOST_WALKS / FIRST_WALKS)
+    if walks.error <= target or allowed < 1.2:
+        return walks
+    return Walks(bakes, scene, mesh, FIRST_WALKS * min(wanted, allowed), 1 + WALKS)
 
 
-def row(program, scene, options, walk_error):
-    """The cells of one scene."""
-    report, seconds = bake(program, scene, *options)
-    if isinstance(report, str):
-        return [Path(scene).name, report]
-    # Walks take so many patches again if they are asked for with the same words.
-    mesh = [option for option in options if option.startswith("--patch")]
-    walk = ["--solver", "random-walk", "--target-error", walk_error]
-    walked, walk_seconds = bake(program, scene, *walk, *mesh)
-    again, _ = bake(program, scene, *walk, *mesh, "--seed", 2)
-    finer, _ = bake(program, scene, *walk, "--patches", 4 * report["patches"])
-    cells = [Path(scene).name, str(report["patches"]), report["solver"], report["method"]]
-    for other in (walked, again, finer):
-        if isinstance(other, str):
-            return cells + [other]
-    if walked["patches"] != report["patches"]:
-        return cells + [f"walks took {walked['patches']} patches"]
-    factors = report["form_factors"]
-    return cells + [f"{100 * material_rms(report, walked):.2f}",
-                    f"{100 * material_rms(again, walked) / math.sqrt(2):.2f}",
-                    f"{100 * material_rms(walked, finer):.2f}",
-                    f"{100 * report['energy'].get('imbalance_before_repair', report['energy']['imbalance']):.3f}",
-                    f"{factors.get('mean_row_error', 0):.4f}",
-                    f"{seconds:.1f}", f"{walk_seconds:.1f}"]
+def factor_cells(bakes, scene, options, rows):
+    """Correction, what the rows state, and what rays say."""
+    check = RowCheck(bakes, scene, options, rows)
+    repair = check.repair
+    correction = f"{repair['largest_correction']:.2g} ({repair['row_change']:.4f})" if repair else "large"
+    stated = check.report["row_error"]
+    least, spread, most = check.error()
+    return [correction, f"{stated['mean']:.4f}" if stated["mean"] is not None else "", f"{least:.4f} ({spread:.4f}) to {most:.3f}"]
+
+
+def cells_of(bakes, scene, options, arguments):
+    """The cells of a scene after its name; ends early, with the reason, if something cannot be had."""
+    cells = []
+    try:
+        report = bakes.report(scene, *options)
+        cells = [str(report["patches"]), report["method"]]
+        mesh = mesh_options(options)
+        walks = exact_walks(bakes, scene, mesh, arguments.walk_error, arguments.walk_seconds)
+        if walks.patches != report["patches"]:
+            return cells + [f"walks took {walks.patches} patches"]
+        finer = Walks(bakes, scene, ["--patches", 4 * report["patches"]], walks.walks)
+        imbalance = report["energy"]["imbalance_before_repair"]
+        if imbalance is None:
+            imbalance = report["energy"]["imbalance"]
+        cells += [f"{100 * relative_error(materials_of(report), walks.light):.2f}", f"{100 * walks.error:.2f}",
+                  f"{100 * relative_error(finer.light, walks.light):.2f}", f"{100 * imbalance:.3f}"]
+        try:
+            cells += factor_cells(bakes, scene, options, arguments.rows) if arguments.rows else ["", "", ""]
+        except NoReport as error:
+            cells += [f"{error}", "", ""]
+        cells.append(f"{report['cpu']:.1f}")
+        former = bakes.report(scene, *mesh, "--method", "hemicube")
+        cells += [f"{100 * relative_error(materials_of(former), walks.light):.2f}", f"{former['cpu']:.1f}",
+                  f"{walks.cpu:.0f}"]
+    except NoReport as error:
+        cells.append(f"{error}")
+    return cells
+
+
+def line_of(cells):
+    """Of the table; no cell may end its row."""
+    return "| " + " | ".join(cell.replace("|", "/") for cell in cells) + " |"
 
 
 def main():
     """The program."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=os.environ.get("LAMBERT", str(ROOT / "build/cli/lambert")))
-    parser.add_argument("--options", default="", help="more options for the bake, not for the walks")
-    parser.add_argument("--walk-error", type=float, default=0.02, help="of a patch, relative; of materials much less")
-    parser.add_argument("scenes", nargs="+")
+    parser.add_argument("--options", default="", help="more options, not for the walks but for those of the mesh")
+    parser.add_argument("--walk-error", type=float, default=.002, help="relative, of materials' irradiance [.002]")
+    parser.add_argument("--walk-seconds", type=float, default=60, help="CPU time they may take, and again on the finer mesh [60]")
+    parser.add_argument("--rows", type=int, default=40, help="of form factors to check by rays; 0: none [40]")
+    parser.add_argument("--done", type=Path, help="earlier output; scenes in it are left out")
+    parser.add_argument("scenes", nargs="*", type=Path)
     arguments = parser.parse_args()
-    header = ["scene", "patches", "solver", "method", "error %", "of the walks %", "of the mesh %", "imbalance %",
-              "row error", "CPU s", "walks' CPU s"]
-    print("| " + " | ".join(header) + " |\n" + "|---" * len(header) + "|", flush=True)
-    for scene in arguments.scenes:
-        cells = row(arguments.program, scene, shlex.split(arguments.options), arguments.walk_error)
-        print("| " + " | ".join(cells) + " |", flush=True)
+    bakes = Bakes(arguments.program)
+    done = arguments.done.read_text(encoding="utf-8") if arguments.done and arguments.done.exists() else ""
+    if not done:
+        print(line_of(HEADER) + "\n" + "|---" * len(HEADER) + "|", flush=True)
+    for scene in arguments.scenes or all_scenes():
+        if f"| {scene.name} |" not in done:
+            print(line_of([scene.name] + cells_of(bakes, scene, shlex.split(arguments.options), arguments)), flush=True)
     return 0
 
 
