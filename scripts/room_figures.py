@@ -12,8 +12,8 @@ Without scenes: those of data/ and of LAMBERT_SCENES but the conference room. Co
               most --walk-seconds of CPU time or so
   mesh %      the same difference of walks on four times the patches from those on the bake's; it holds the noise of both
   imbalance % of energy, by the form factors as they were computed, before any repair
-  correction  the largest, as a share, that --repair makes to these factors, and in brackets how much it changes a row in the mean;
-              "large": there was no memory for it
+  correction  the largest, as a share, by which --repair closes a row, and in brackets by how much it changes rows in the mean: a
+              patch that sees next to nothing makes the first large, only poor factors the second; "large": no room for it
   rows state  the mean row error that the factors state for themselves
   by rays     between what that error lies by 1e5 independent rays on each of --rows random rows, their own noise taken off; in brackets the
               standard error of the lower bound (row_check.py says how)
@@ -32,6 +32,7 @@ from scene_bakes import Bakes, NoReport, ROOT, all_scenes, materials_of, mean_of
 
 WALKS = 4  # independent sets of them
 FIRST_WALKS, MOST_WALKS = 1e6, 4e9
+MOST_ENTRIES = 2.5e8  # of a matrix, which is written to a temporary file
 HEADER = ["scene", "patches", "method", "error %", "walks %", "mesh %", "imbalance %", "correction", "rows state", "by rays", "CPU s",
           "hemicube error %", "hemicube CPU s", "walks CPU s"]
 
@@ -57,14 +58,20 @@ def exact_walks(bakes, scene, mesh, target, seconds):
     return Walks(bakes, scene, mesh, FIRST_WALKS * min(wanted, allowed), 1 + WALKS)
 
 
-def factor_cells(bakes, scene, options, rows):
-    """Correction, what the rows state, and what rays say."""
+def factor_cells(bakes, scene, options, rows, baked):
+    """Correction, what the rows state, and what rays say; `baked` is the bake's report of its factors."""
+    if not rows or not baked["entries"]:
+        return ["", "", ""]
+    if baked["entries"] > MOST_ENTRIES:
+        return ["large", f"{baked['mean_row_error']:.4f}", "large"]
     check = RowCheck(bakes, scene, options, rows)
-    repair = check.repair
+    repair, stated = baked["repair"] or check.repair, check.report["row_error"]
     correction = f"{repair['largest_correction']:.2g} ({repair['row_change']:.4f})" if repair else "large"
-    stated = check.report["row_error"]
+    cells = [correction, f"{stated['mean']:.4f}" if stated["mean"] is not None else ""]
+    if not check.bounds:
+        return cells + ["no rows"]
     least, spread, most = check.error()
-    return [correction, f"{stated['mean']:.4f}" if stated["mean"] is not None else "", f"{least:.4f} ({spread:.4f}) to {most:.3f}"]
+    return cells + [f"{least:.4f} ({spread:.4f}) to {most:.3f}"]
 
 
 def cells_of(bakes, scene, options, arguments):
@@ -84,7 +91,7 @@ def cells_of(bakes, scene, options, arguments):
         cells += [f"{100 * relative_error(materials_of(report), walks.light):.2f}", f"{100 * walks.error:.2f}",
                   f"{100 * relative_error(finer.light, walks.light):.2f}", f"{100 * imbalance:.3f}"]
         try:
-            cells += factor_cells(bakes, scene, options, arguments.rows) if arguments.rows else ["", "", ""]
+            cells += factor_cells(bakes, scene, options, arguments.rows, report["form_factors"])
         except NoReport as error:
             cells += [f"{error}", "", ""]
         cells.append(f"{report['cpu']:.1f}")

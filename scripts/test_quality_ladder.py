@@ -14,7 +14,7 @@ def report(**light):
 
 
 class FakeBakes:
-    """Errors that fall, and a reference whose halves differ by 2 * own."""
+    """Errors that fall, and a reference of seeds that are off by own, to either side."""
 
     def __init__(self, by_preset, own):
         self.by_preset, self.own, self.asked = by_preset, own, []
@@ -22,7 +22,7 @@ class FakeBakes:
     def report(self, _, *options):
         self.asked.append(options)
         if "stochastic" in options:
-            light = 1 + (self.own if options[-1] == "1" else -self.own)
+            light = 1 + (self.own if int(options[-1]) % 2 else -self.own)
         else:
             light = 1 + self.by_preset[options[1]]
         return {**report(wall=light), "patches": 100, "cpu": 1.0, "energy": {"imbalance": 0}}
@@ -41,15 +41,16 @@ class QualityLadder(unittest.TestCase):
 
     def test_a_preset_is_worse_only_beyond_the_references_error(self):
         self.assertEqual(ladder.worse_presets([.03, .01, .002], .001), [])
-        self.assertEqual(ladder.worse_presets([.03, .0311, .0319], .001), [])
+        self.assertEqual(ladder.worse_presets([.03, .0311, .0329], .001), [])
         self.assertEqual(ladder.worse_presets([.01, .03, .02], .001), ["normal", "high"])
 
-    def test_a_ladder_bakes_three_presets_and_two_references(self):
+    def test_a_ladder_bakes_three_presets_and_four_references(self):
         bakes = FakeBakes({"preview": .04, "normal": .01, "high": .02}, .001)
         row = ladder.ladder(bakes, Path("room.obj"), 4)
         for found, error in zip(row["errors"], (.04, .01, .02)):
             self.assertAlmostEqual(found, error, 12)
-        self.assertAlmostEqual(row["own_error"], .001, 5)
+        self.assertAlmostEqual(row["own_error"], .001 / math.sqrt(3), 5)
+        self.assertEqual(len(bakes.asked), 7)
         self.assertEqual(row["worse"], ["high"])
         self.assertIn("400", bakes.asked[-1])
         self.assertIn("worse: high", ladder.row_text(row))

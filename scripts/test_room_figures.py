@@ -109,7 +109,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(row), len(header), row)
         self.assertLess(float(cells["error %"]), 1)
         self.assertLess(float(cells["walks %"]), .5)
-        self.assertLess(float(cells["by rays"].split()[0]), float(cells["rows state"]) + .003)
+        self.assertLess(float(cells["by rays"].split()[0]), float(cells["rows state"]) + .01)  # four standard errors
 
     def test_a_scene_without_light_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
