@@ -21,6 +21,14 @@ void PairSample::restart(const std::array<std::uint32_t, 4>& newShift) {
     weight[0] = weight[1] = visibleWeight[0] = visibleWeight[1] = 0.0F;
 }
 
+void PairSample::setCounted(double counted, double standardError) {
+    const double share = counted / static_cast<double>(factor);
+    const double spread = standardError / static_cast<double>(factor);
+    weight[0] = weight[1] = 1.0F;
+    visibleWeight[0] = static_cast<float>(share + spread);
+    visibleWeight[1] = static_cast<float>(share - spread);
+}
+
 void PairRays::trace(std::span<PairSample> pairs) {
     for (PairSample& pair : pairs)
         for (std::uint32_t k = pair.rays; k < pair.wanted; ++k) add(pair, k);

@@ -30,6 +30,8 @@ struct PairSample {
     double half(int which) const {
         return weight[which] > 0.0F ? static_cast<double>(visibleWeight[which] / weight[which]) : visibleShare();
     }
+    /// Takes, instead of what rays found, a factor with this standard error.
+    void setCounted(double counted, double standardError);
     /// Forgets the rays.
     void restart(const std::array<std::uint32_t, 4>& newShift);
 };

@@ -3,11 +3,10 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "formfactors/closed_form.h"
-#include "formfactors/gauss_exchange.h"
 #include "formfactors/hit_sum.h"
 #include "formfactors/local_lines.h"
+#include "formfactors/near_exchange.h"
 #include "formfactors/pair_rays.h"
-#include "formfactors/quadrature.h"
 #include "meshing/prepare.h"
 
 #include <fmt/format.h>
@@ -25,9 +24,11 @@ constexpr double kQuadratureError = 5e-4; ///< of a row's sum, by the rules of P
 /// box; both only choose the first number of rays, and further rounds mend what they miss.
 constexpr double kSpread = 0.12;
 constexpr double kRate = 0.625;
-constexpr double kAgreement = 1e-3;       ///< of two rules, so that the finer one is taken to be right to a part of it
-constexpr double kSmallFactor = 1e-6;     ///< rules are right enough
 constexpr std::size_t kMostBlocks = 4096; ///< of which pairs are tested, to know what is hidden before any ray
+/// Of lines through the hemisphere to that of independent ones: they are spread evenly.
+constexpr double kLineVariance = 0.25;
+constexpr double kLineNoise = 0.02; ///< of the share that kRemainderLines find, at most
+constexpr double kDoubt = 3.0;      ///< rows of so many times the error asked for are looked at again
 constexpr int kMostRounds = 4;
 constexpr std::uint32_t kMostRaysPerPair = 1U << 20;
 constexpr std::uint32_t kRunLength = 16;  ///< neighbouring pairs that are judged together
@@ -45,42 +46,6 @@ Plane planeOf(const PatchMesh& mesh, std::size_t patch) {
     const double length = glm::length(areaVector);
     return Plane::through(glm::dvec3(mesh.centroid[patch]),
                           length > 0.0 ? areaVector / length : glm::dvec3(mesh.normal[patch]));
-}
-
-double radiusOf(const ConvexPolygon& polygon, const glm::dvec3& centre) {
-    double squared = 0.0;
-    for (const glm::dvec3& p : polygon.points()) squared = std::max(squared, glm::dot(p - centre, p - centre));
-    return std::sqrt(squared);
-}
-
-/// ∫ of what points of one polygon see of the other, in m², by a rule of this order.
-double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, const ConvexPolygon& inner, int order) {
-    thread_local std::vector<WeightedPoint> points;
-    points.clear();
-    appendGaussPoints(outer.points(), order, points);
-    double sum = 0.0;
-    for (const auto& [x, weight] : points) sum += weight * pointToVisiblePolygon(x, normal, inner.points());
-    return sum;
-}
-
-/// A_from F_from,to in m², each in front of the other's plane: to about 1e-3, or where rules of quadrature fail to 1e-6.
-double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane) {
-    const glm::dvec3 fromCentre = from.centre(), toCentre = to.centre();
-    const double fromRadius = radiusOf(from, fromCentre), toRadius = radiusOf(to, toCentre);
-    const bool fromIsSmaller = fromRadius < toRadius;
-    const double smaller = fromIsSmaller ? fromRadius : toRadius;
-    const ConvexPolygon& outer = fromIsSmaller ? from : to;
-    const ConvexPolygon& inner = fromIsSmaller ? to : from;
-    const glm::dvec3& normal = fromIsSmaller ? fromPlane.normal : toPlane.normal;
-    const double gap = (glm::distance(fromCentre, toCentre) - fromRadius - toRadius) / (2.0 * smaller);
-    // A rule of order n errs by ρ^(−2n), ρ = 2 gap + √(4 gap² + 1).
-    const int order = gap > 1.4 ? 2 : gap > 0.7 ? 3 : 4;
-    const double mean = meanOverPoints(outer, normal, inner, order);
-    if (gap > 0.4 || mean < kSmallFactor * smaller * smaller) return mean;
-    // Neighbours that share an edge are smooth too, others need the contour integral.
-    const double finer = meanOverPoints(outer, normal, inner, 6);
-    return std::abs(mean - finer) < kAgreement * finer ? finer
-                                                       : convexExchange(from, fromPlane, to, toPlane, Care::Rough);
 }
 
 } // namespace
@@ -124,6 +89,7 @@ public:
             PairRays rays(method_.rays_, shape_, method_.shapes_);
             pilot(rays);
             sample(rays);
+            if (isDoubtful()) countNearPairs();
             method_.raysTraced_ += rays.traced();
         }
         method_.raysTraced_ += lines.size();
@@ -297,19 +263,56 @@ private:
         }
     }
 
+    /// Whether the row is far from what was asked for, or its pairs and its lines disagree.
+    bool isDoubtful() const {
+        const double disagreement = std::max(0.0, std::abs(lineFront_ - sum_) - kLineNoise);
+        return error_ + disagreement > kDoubt * method_.options_.error;
+    }
+
+    /// Two patches in a narrow gap exchange light between points that face each other, which rays between any points of both
+    /// hardly ever meet: what lines through the hemisphere count takes their place.
+    void countNearPairs() {
+        if (std::none_of(pairs_.begin(), pairs_.end(), [](const PairSample& pair) { return pair.weighted; })) return;
+        thread_local RowAccumulator counts(0);
+        thread_local FormFactorRow counted;
+        if (counts.back() != method_.mesh_.size()) counts = RowAccumulator(method_.mesh_.size());
+        if (patch_ == kNone)
+            method_.moreLines_.pointRow(viewer_.centre, viewer_.normal, index_, counts);
+        else
+            method_.moreLines_.row(patch_, counts);
+        counts.take(counted);
+        method_.raysTraced_ += kMoreLines;
+        lineBack_ = counted.back;
+        lineOut_ = counted.out;
+        lineFront_ = std::max(0.0, 1.0 - lineBack_ - lineOut_);
+        lines_ = kMoreLines;
+        auto entry = counted.entries.begin();
+        std::sort(pairs_.begin(), pairs_.end(),
+                  [](const PairSample& a, const PairSample& b) { return a.patch < b.patch; });
+        for (PairSample& pair : pairs_) {
+            if (!pair.weighted) continue;
+            while (entry != counted.entries.end() && entry->patch < pair.patch) ++entry;
+            const bool isHit = entry != counted.entries.end() && entry->patch == pair.patch;
+            const double value = isHit ? entry->value : 0.0;
+            pair.setCounted(value,
+                            std::sqrt(kLineVariance * std::max(value * (1.0 - value), 1.0 / kMoreLines) / kMoreLines));
+        }
+        assess();
+    }
+
     void close(RowAccumulator& accumulator) {
         const double lineRemainder = lineBack_ + lineOut_;
+        const double quadrature = kQuadratureError * kQuadratureError * sum_ * sum_;
         double target = 1.0;
         if (lineRemainder > 0.0) {
-            const auto n = static_cast<double>(kRemainderLines);
-            // Lines are spread evenly: taken to have a quarter of the variance of independent ones.
-            const double lineVariance = 0.25 * std::max(lineFront_ * lineRemainder, 1.0 / n) / n;
-            const double pairVariance = variance_ + kQuadratureError * kQuadratureError;
+            const auto n = static_cast<double>(lines_);
+            const double lineVariance = kLineVariance * std::max(lineFront_ * lineRemainder, 1.0 / n) / n;
+            const double pairVariance = variance_ + quadrature;
             target = std::min(1.0, (sum_ * lineVariance + lineFront_ * pairVariance) / (lineVariance + pairVariance));
         }
         if (!(sum_ > 0.0)) target = 0.0;
         // The correction goes where the error is: into the pairs by their variances, and evenly into what the rules leave.
-        const double uneven = variance_ / (variance_ + kQuadratureError * kQuadratureError);
+        const double uneven = variance_ > 0.0 ? variance_ / (variance_ + quadrature) : 0.0;
         const double perVariance = variance_ > 0.0 ? uneven * (target - sum_) / variance_ : 0.0;
         const auto corrected = [&](const PairSample& pair) {
             const double factor = pair.factor;
@@ -334,7 +337,7 @@ private:
         } else if (!(total > 0.0)) {
             accumulator.add(accumulator.back(), remainder);
         }
-        accumulator.setError(error_ + (sum > 0.0 ? std::abs(rescale - 1.0) : 0.0));
+        accumulator.setError(error_ + std::abs(target - sum));
     }
 
     std::array<std::uint32_t, 4> shiftOf(std::uint32_t patch, std::uint32_t phase) const {
@@ -352,6 +355,7 @@ private:
     std::vector<PairSample>& pairs_; ///< whose visibility rays are to find
     std::vector<ClearPair>& clear_;  ///< what nothing stands before
     double clearSum_ = 0.0;
+    std::uint32_t lines_ = kRemainderLines;
     double lineFront_ = 0.0, lineBack_ = 0.0, lineOut_ = 0.0; ///< shares of the lines
     double sum_ = 0.0, variance_ = 0.0, error_ = 0.0;
 };
@@ -363,6 +367,7 @@ VisibilitySampling::VisibilitySampling(const PatchMesh& mesh, const RayCaster& r
       options_(options),
       tolerance_(2.0F * weldTolerance(rays.scene())),
       lines_(mesh, rays, {.lines = kRemainderLines, .seed = options.seed}),
+      moreLines_(mesh, rays, {.lines = kMoreLines, .seed = options.seed + 1}),
       blocks_(mesh) {
     if (!(options.error >= 1e-5 && options.error <= 0.5))
         throw UsageError(fmt::format("form-factor error: found {}, allowed are 1e-5 to 0.5", options.error));

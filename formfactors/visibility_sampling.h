@@ -22,7 +22,7 @@ struct VisibilitySamplingOptions {
 };
 
 /// Form factors as closed form × visibility: what a patch would see of each other one if nothing stood between is computed (to
-/// about 1e-3, for neighbours to 1e-6), and rays between points of both find the share that is visible. Unlike what one viewpoint
+/// about 1e-3, for neighbours to 1e-4), and rays between points of both find the share that is visible. Unlike what one viewpoint
 /// sees, neither needs patches that are small against their distances, nor pixels that are small against the patches.
 ///
 /// Of blocks of patches that the scene hides wholly or not at all from each other this is found without rays, see BlockVisibility.
@@ -30,7 +30,8 @@ struct VisibilitySamplingOptions {
 /// Every row knows its error. A first few rays per pair tell where some are blocked and some are not among neighbouring
 /// pairs; there, and in proportion to what is at stake, as many more are traced as bring Σ_j |ΔF_ij| below the error asked for. The
 /// first rays only decide and do not count, so that every factor is unbiased before closure. F_back and F_out come from lines
-/// through the hemisphere; within its error the row is then closed, Σ_j F_ij + F_back + F_out = 1.
+/// through the hemisphere; where these and the pairs disagree, more of them count what near patches see of each other. Within its
+/// error the row is then closed, Σ_j F_ij + F_back + F_out = 1.
 ///
 /// J. R. Wallace, K. A. Elmquist, E. A. Haines, "A ray tracing algorithm for progressive radiosity", SIGGRAPH 1989, has the sum of
 /// closed forms times visibility from a point.
@@ -48,6 +49,7 @@ public:
     std::uint64_t raysTraced() const override { return raysTraced_; }
 
     static constexpr std::uint32_t kRemainderLines = 1024; ///< per row, for F_back and F_out
+    static constexpr std::uint32_t kMoreLines = 32768;     ///< for rows that are in doubt
 
 private:
     class Row;
@@ -56,7 +58,7 @@ private:
     const RayCaster& rays_;
     VisibilitySamplingOptions options_;
     float tolerance_; ///< metres; what is nearer to a plane counts as in it
-    LocalLines lines_;
+    LocalLines lines_, moreLines_;
     PatchBlocks blocks_;
     std::optional<BlockVisibility> known_; ///< where it does not take too long
     std::vector<PatchShape> shapes_;
