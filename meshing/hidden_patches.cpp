@@ -142,7 +142,7 @@ private:
             }
             rays_.closest(points_[point] + offset * side, packet_);
             for (int lane = 0; lane < RayPacket::kSize; ++lane)
-                if (!isBlackBack(packet_.polygon[lane], packet_.facing[lane])) return false;
+                if (!isBlackBack(packet_.polygon[lane], packet_.facing[lane]) && !liesOnBlackBack(lane)) return false;
         }
         return true;
     }
@@ -150,6 +150,19 @@ private:
     bool isBlackBack(std::uint32_t polygon, float facing) const {
         return polygon != kNone && facing >= 0.0F && scene_.polygons[polygon].backMaterial == kNone &&
                !isOccluder(scene_, scene_.polygons[polygon]);
+    }
+
+    /// Whether the front that a ray has met touches another: from the inside of that one, either may be met.
+    bool liesOnBlackBack(int lane) {
+        const std::uint32_t polygon = packet_.polygon[lane];
+        if (polygon == kNone || packet_.facing[lane] >= 0.0F) return false;
+        const glm::vec3 point = polygonPoint(scene_, polygon, packet_.u[lane], packet_.v[lane]);
+        const PlaneFrame frame = planeFrame(scene_, scene_.polygons[polygon]);
+        const glm::dvec3 normal = glm::cross(frame.axisX, frame.axisY);
+        index_.near(point, tolerance_, found_);
+        return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t other) {
+            return other != polygon && isBlackBack(other, 0.0F) && touches(other, point, normal);
+        });
     }
 
     const RayCaster& rays_;

@@ -64,6 +64,21 @@ TEST(FindHiddenPatches, FindsWhereBoxesStandOnEachOther) {
     EXPECT_NEAR(areas[17], 0.3, 1e-5);
 }
 
+// From inside either of two boxes that touch, rays may meet the other one's front.
+TEST(FindHiddenPatches, FindsWhereThreeBoxesTouchEachOther) {
+    Scene scene = roomWithBox(0.0F);
+    addBox(scene, {1.0F, 1.3F, 1.0F}, {1.4F, 2.5F, 1.8F}, true); // a seat's back, and an arm before it
+    addBox(scene, {1.4F, 1.3F, 1.0F}, {2.0F, 1.5F, 1.4F}, true);
+    const std::vector<double> areas = hiddenAreas(prepareScene(scene), 1500);
+    EXPECT_NEAR(areas[10], 0.4 * 1.2 + 0.6 * 0.2, 1e-5); // the seat
+    EXPECT_NEAR(areas[17], 0.4 * 1.2, 1e-5);             // the bottoms of the others
+    EXPECT_NEAR(areas[23], 0.6 * 0.2, 1e-5);
+    double sides = 0.0;
+    for (std::size_t polygon = 12; polygon < 24; ++polygon)
+        sides += polygon == 17 || polygon == 23 ? 0.0 : areas[polygon];
+    EXPECT_NEAR(sides, 2.0 * 0.2 * 0.4, 1e-5);
+}
+
 TEST(FindHiddenPatches, KeepsBothSidesOfAPartition) {
     Scene scene = roomWithBox(0.0F);
     // Two faces back to back, differently cut.
