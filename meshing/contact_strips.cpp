@@ -1,6 +1,6 @@
 #include "meshing/contact_strips.h"
 
-#include "meshing/planar_lines.h"
+#include "meshing/face_lines.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
@@ -96,7 +96,7 @@ double drawnOut(glm::dvec2 before, glm::dvec2 after, double side, double distanc
 /// Draws the lines at one distance from the edges.
 class Level {
 public:
-    Level(std::span<const HoveringEdge> edges, double distance, PlanarLines& lines)
+    Level(std::span<const HoveringEdge> edges, double distance, FaceDrawing& lines)
         : distance_(distance), lines_(lines) {
         for (const Chain& chain : chainsOf(edges)) {
             chains_.push_back(simplified(chain, kSimplified * distance));
@@ -107,7 +107,7 @@ public:
 
     /// The edges themselves.
     void drawEdges() const {
-        for (const PlanarSegment& s : segments_) lines_.add({s, 0.0, 1.0, glm::distance(s.from, s.to)}, distance_);
+        for (const FaceSegment& s : segments_) lines_.add({s, 0.0, 1.0, glm::distance(s.from, s.to)}, distance_);
     }
 
     /// Both sides, cut off where they come too near to some edge, also to those that have no line at this distance.
@@ -140,18 +140,18 @@ public:
     }
 
 private:
-    void draw(PlanarLine line, std::size_t own, std::span<const HoveringEdge> others) const {
-        std::vector<PlanarLine> pieces{line};
+    void draw(DrawnLine line, std::size_t own, std::span<const HoveringEdge> others) const {
+        std::vector<DrawnLine> pieces{line};
         for (std::size_t i = 0; i < segments_.size(); ++i)
             if (i != own) cutAway(segments_[i], (1.0 - 1e-6) * distance_, pieces);
         for (const HoveringEdge& other : others) cutAway({other.from, other.to}, 0.5 * distance_, pieces);
-        for (const PlanarLine& piece : pieces) lines_.add(piece, distance_);
+        for (const DrawnLine& piece : pieces) lines_.add(piece, distance_);
     }
 
     double distance_;
-    PlanarLines& lines_;
+    FaceDrawing& lines_;
     std::vector<Chain> chains_;
-    std::vector<PlanarSegment> segments_; ///< of all chains, in order
+    std::vector<FaceSegment> segments_; ///< of all chains, in order
 };
 
 } // namespace
@@ -163,7 +163,7 @@ int stripLevels(double gap, const StripOptions& options) {
 
 FaceLines contactStrips(std::span<const glm::dvec2> border, std::span<const HoveringEdge> edges,
                         std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts, const StripOptions& options) {
-    PlanarLines lines(border, contacts, {options.tolerance, kClear, kShallow});
+    FaceDrawing lines(border, contacts, {options.tolerance, kClear, kShallow});
     // Strips of all edges end at the same distances, so that they join.
     const auto levelOf = [&](const HoveringEdge& edge) { return edge.strips ? stripLevels(edge.gap, options) : 0; };
     const double finest = std::ldexp(options.length, -options.levels);

@@ -1,10 +1,11 @@
 #pragma once
 
+#include "meshing/face_lines.h"
+
 #include <glm/vec2.hpp>
 
-#include <cstdint>
 #include <span>
-#include <vector>
+#include <utility>
 
 namespace lambert {
 
@@ -13,21 +14,6 @@ struct HoveringEdge {
     glm::dvec2 from, to;
     double gap = 0.0;    //!< metres to the face, > 0
     bool strips = false; //!< whether it gets strips along it, or is followed alone
-};
-
-/// A line that no patch of a face shall cross.
-struct FaceLine {
-    std::uint32_t from = 0, to = 0; //!< into FaceLines::points
-    double start = 0.0, end = 1.0;  //!< where its ends lie along the edge that it follows, 0 to 1 on the edge itself
-    double edgeLength = 0.0;        //!< of that edge, metres
-};
-
-/// Lines in the plane of a face; they meet at common points only.
-struct FaceLines {
-    std::vector<glm::dvec2> points;
-    std::vector<bool> onBorder;          //!< #points
-    std::vector<std::uint32_t> vertices; //!< #points, of the scene at points on the border; kNone inside
-    std::vector<FaceLine> lines;
 };
 
 struct StripOptions {

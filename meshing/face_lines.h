@@ -1,34 +1,48 @@
 #pragma once
 
-#include "meshing/contact_strips.h"
-
 #include <glm/vec2.hpp>
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace lambert {
 
-struct PlanarSegment {
+/// A line that no patch of a face shall cross.
+struct FaceLine {
+    std::uint32_t from = 0, to = 0; //!< into FaceLines::points
+    double start = 0.0, end = 1.0;  //!< where its ends lie along the edge that it follows, 0 to 1 on the edge itself
+    double edgeLength = 0.0;        //!< of that edge, metres
+};
+
+/// Lines in the plane of a face; they meet at common points only.
+struct FaceLines {
+    std::vector<glm::dvec2> points;
+    std::vector<bool> onBorder;          //!< #points
+    std::vector<std::uint32_t> vertices; //!< #points, of the scene at points on the border; kNone inside
+    std::vector<FaceLine> lines;
+};
+
+struct FaceSegment {
     glm::dvec2 from, to;
 };
 
 /// A line, and where it begins and ends along an edge that it follows, see FaceLine.
-struct PlanarLine {
-    PlanarSegment segment;
+struct DrawnLine {
+    FaceSegment segment;
     double start, end;
     double edgeLength;
 
     /// From and to these parts of the line, 0 to 1.
-    PlanarLine part(double from, double to) const;
+    DrawnLine part(double from, double to) const;
 };
 
 /// Removes from lines what is nearer to a segment than `distance`.
-void cutAway(const PlanarSegment& segment, double distance, std::vector<PlanarLine>& lines);
+void cutAway(const FaceSegment& segment, double distance, std::vector<DrawnLine>& lines);
 
 /// Collects lines in a face, so that they can be edges of a triangulation.
-class PlanarLines {
+class FaceDrawing {
 public:
     struct Options {
         double tolerance; //!< metres; points nearer to each other are one
@@ -36,29 +50,25 @@ public:
         double shallow;   //!< sine of the angle below which a border is beside a line
     };
     /// `border` is convex and counter-clockwise.
-    PlanarLines(std::span<const glm::dvec2> border, std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts,
+    FaceDrawing(std::span<const glm::dvec2> border, std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts,
                 const Options& options);
 
     /// What of a line lies in the face, clear of contacts and of the border; where it crosses the border, up to there.
     /// `clearance` in metres.
-    void add(const PlanarLine& line, double clearance);
+    void add(const DrawnLine& line, double clearance);
 
-    /// The lines, divided where they meet each other.
+    /// The lines, divided where they meet each other; none if that cannot be had.
     FaceLines finish() &&;
 
 private:
-    bool clip(PlanarLine& line) const;
-    void reachBorder(PlanarLine& line, double within) const;
+    bool clip(DrawnLine& line) const;
+    void reachBorder(DrawnLine& line, double within) const;
     double depth(glm::dvec2 point) const;
-    std::uint32_t pointAt(glm::dvec2 point);
-    void divideAt(std::size_t line, std::vector<std::pair<double, std::uint32_t>> stops,
-                  std::vector<FaceLine>& divided) const;
 
     std::vector<glm::dvec2> border_;
     std::vector<std::pair<glm::dvec2, glm::dvec2>> contacts_;
     Options options_;
-    std::vector<PlanarLine> lines_;
-    FaceLines result_;
+    std::vector<DrawnLine> lines_;
 };
 
 } // namespace lambert

@@ -1,6 +1,7 @@
-#include "meshing/planar_lines.h"
+#include "meshing/face_lines.h"
 
 #include "meshing/pair_triangles.h"
+#include "meshing/plane_lines.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -8,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 namespace lambert {
 
@@ -48,7 +51,7 @@ Interval nearPoint(glm::dvec2 p, glm::dvec2 d, double r) {
 }
 
 /// Where a line is nearer to a segment than r: one interval, as what is near to a segment is convex.
-Interval nearSegment(const PlanarSegment& line, const PlanarSegment& segment, double r) {
+Interval nearSegment(const FaceSegment& line, const FaceSegment& segment, double r) {
     const glm::dvec2 d = line.to - line.from;
     Interval result = nearPoint(line.from - segment.from, d, r);
     result.unite(nearPoint(line.from - segment.to, d, r));
@@ -66,7 +69,7 @@ Interval nearSegment(const PlanarSegment& line, const PlanarSegment& segment, do
     return result;
 }
 
-bool mayBeNear(const PlanarSegment& one, const PlanarSegment& two, double distance) {
+bool mayBeNear(const FaceSegment& one, const FaceSegment& two, double distance) {
     const glm::dvec2 lower = glm::max(glm::min(one.from, one.to), glm::min(two.from, two.to));
     const glm::dvec2 upper = glm::min(glm::max(one.from, one.to), glm::max(two.from, two.to));
     return lower.x - upper.x <= distance && lower.y - upper.y <= distance;
@@ -74,16 +77,16 @@ bool mayBeNear(const PlanarSegment& one, const PlanarSegment& two, double distan
 
 } // namespace
 
-PlanarLine PlanarLine::part(double from, double to) const {
+DrawnLine DrawnLine::part(double from, double to) const {
     return {{glm::mix(segment.from, segment.to, from), glm::mix(segment.from, segment.to, to)},
             start + from * (end - start),
             start + to * (end - start),
             edgeLength};
 }
 
-void cutAway(const PlanarSegment& segment, double distance, std::vector<PlanarLine>& lines) {
-    std::vector<PlanarLine> left;
-    for (const PlanarLine& line : lines) {
+void cutAway(const FaceSegment& segment, double distance, std::vector<DrawnLine>& lines) {
+    std::vector<DrawnLine> left;
+    for (const DrawnLine& line : lines) {
         const Interval near = mayBeNear(line.segment, segment, distance) ? nearSegment(line.segment, segment, distance)
                                                                          : Interval{0.0, 0.0};
         if (near.isEmpty() || near.from >= 1.0 || near.to <= 0.0) {
@@ -96,12 +99,12 @@ void cutAway(const PlanarSegment& segment, double distance, std::vector<PlanarLi
     lines = std::move(left);
 }
 
-PlanarLines::PlanarLines(std::span<const glm::dvec2> border,
+FaceDrawing::FaceDrawing(std::span<const glm::dvec2> border,
                          std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts, const Options& options)
     : border_(border.begin(), border.end()), contacts_(contacts.begin(), contacts.end()), options_(options) {}
 
 /// Depth below the border, metres; negative outside.
-double PlanarLines::depth(glm::dvec2 point) const {
+double FaceDrawing::depth(glm::dvec2 point) const {
     double depth = std::numeric_limits<double>::max();
     for (std::size_t k = 0; k < border_.size(); ++k) {
         const glm::dvec2 edge = border_[(k + 1) % border_.size()] - border_[k];
@@ -110,7 +113,7 @@ double PlanarLines::depth(glm::dvec2 point) const {
     return depth;
 }
 
-bool PlanarLines::clip(PlanarLine& line) const {
+bool FaceDrawing::clip(DrawnLine& line) const {
     Interval inside{0.0, 1.0};
     for (std::size_t k = 0; k < border_.size(); ++k) {
         const glm::dvec2 edge = border_[(k + 1) % border_.size()] - border_[k];
@@ -123,7 +126,7 @@ bool PlanarLines::clip(PlanarLine& line) const {
 }
 
 /// Draws an end that is nearer to the border than `within` out to it.
-void PlanarLines::reachBorder(PlanarLine& line, double within) const {
+void FaceDrawing::reachBorder(DrawnLine& line, double within) const {
     for (std::size_t k = 0; k < border_.size(); ++k) {
         const glm::dvec2 edge = border_[(k + 1) % border_.size()] - border_[k];
         const glm::dvec2 direction = line.segment.to - line.segment.from;
@@ -136,91 +139,70 @@ void PlanarLines::reachBorder(PlanarLine& line, double within) const {
     }
 }
 
-void PlanarLines::add(const PlanarLine& line, double clearance) {
-    PlanarLine inside = line;
+void FaceDrawing::add(const DrawnLine& line, double clearance) {
+    DrawnLine inside = line;
     if (!clip(inside)) return;
     const double clear = std::max(options_.clear * clearance, 4.0 * options_.tolerance);
-    std::vector<PlanarLine> pieces{inside};
+    std::vector<DrawnLine> pieces{inside};
     const glm::dvec2 direction = line.segment.to - line.segment.from;
     for (std::size_t k = 0; k < border_.size(); ++k) {
-        const PlanarSegment side{border_[k], border_[(k + 1) % border_.size()]};
+        const FaceSegment side{border_[k], border_[(k + 1) % border_.size()]};
         const double sine = std::abs(cross(side.to - side.from, direction)) /
                             (glm::distance(side.to, side.from) * glm::length(direction));
         if (sine < options_.shallow) cutAway(side, clear, pieces);
     }
     for (const auto& [from, to] : contacts_) cutAway({from, to}, clear, pieces);
-    for (PlanarLine& piece : pieces) {
+    for (DrawnLine& piece : pieces) {
         if (glm::distance(piece.segment.from, piece.segment.to) < clear) continue;
         reachBorder(piece, clear);
         if (clip(piece)) lines_.push_back(piece);
     }
 }
 
-std::uint32_t PlanarLines::pointAt(glm::dvec2 point) {
-    for (std::uint32_t i = 0; i < result_.points.size(); ++i)
-        if (glm::distance(result_.points[i], point) <= options_.tolerance) return i;
-    result_.points.push_back(point);
-    result_.onBorder.push_back(depth(point) <= options_.tolerance);
-    return static_cast<std::uint32_t>(result_.points.size() - 1);
-}
-
-/// Appends the pieces of a line between its stops, at parts of it.
-void PlanarLines::divideAt(std::size_t line, std::vector<std::pair<double, std::uint32_t>> stops,
-                           std::vector<FaceLine>& divided) const {
-    const PlanarLine& whole = lines_[line];
-    std::sort(stops.begin(), stops.end());
-    for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
-        if (stops[k].second == stops[k + 1].second) continue;
-        const PlanarLine piece = whole.part(stops[k].first, stops[k + 1].first);
-        divided.push_back({stops[k].second, stops[k + 1].second, piece.start, piece.end, piece.edgeLength});
+FaceLines FaceDrawing::finish() && {
+    PlaneLines drawing;
+    const auto pointAt = [&](glm::dvec2 point) {
+        const auto near = std::find_if(drawing.points.begin(), drawing.points.end(), [&](glm::dvec2 known) {
+            return glm::distance(known, point) <= options_.tolerance;
+        });
+        if (near == drawing.points.end()) {
+            drawing.points.push_back(point);
+            drawing.places.emplace_back(point, 0.0);
+            return static_cast<std::uint32_t>(drawing.points.size() - 1);
+        }
+        return static_cast<std::uint32_t>(near - drawing.points.begin());
+    };
+    std::vector<DrawnLine> drawn;
+    for (const DrawnLine& line : lines_) {
+        const std::uint32_t from = pointAt(line.segment.from), to = pointAt(line.segment.to);
+        if (from == to) continue;
+        drawing.lines.push_back({from, to});
+        drawn.push_back(line);
     }
-}
-
-FaceLines PlanarLines::finish() && {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
-    for (const PlanarLine& line : lines_) {
-        const std::uint32_t from = pointAt(line.segment.from); // in this order
-        ends.emplace_back(from, pointAt(line.segment.to));
-    }
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-        for (std::size_t j = i + 1; j < lines_.size(); ++j) {
-            const PlanarSegment& one = lines_[i].segment;
-            const PlanarSegment& two = lines_[j].segment;
-            if (!mayBeNear(one, two, 0.0)) continue;
-            const glm::dvec2 d = one.to - one.from;
-            const glm::dvec2 e = two.to - two.from;
-            const double turn = cross(d, e);
-            if (std::abs(turn) < 1e-9 * glm::length(d) * glm::length(e)) continue;
-            const double t = cross(two.from - one.from, e) / turn;
-            const double s = cross(two.from - one.from, d) / turn;
-            if (t > 0.0 && t < 1.0 && s > 0.0 && s < 1.0) pointAt(one.from + t * d);
+    const std::vector<std::vector<std::uint32_t>> chains = cutLines(drawing, options_.tolerance);
+    FaceLines result;
+    if (chains.empty()) return result;
+    for (const glm::dvec2& point : drawing.points) result.onBorder.push_back(depth(point) <= options_.tolerance);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> known; // each once, also where two edges lie above each other
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+        const FaceSegment& line = drawn[i].segment;
+        const glm::dvec2 along = line.to - line.from;
+        const auto partAt = [&](std::uint32_t point) {
+            return glm::dot(drawing.points[point] - line.from, along) / glm::dot(along, along);
+        };
+        for (std::size_t k = 0; k + 1 < chains[i].size(); ++k) {
+            const std::uint32_t from = chains[i][k], to = chains[i][k + 1];
+            if (!known.insert(edgeKey(from, to)).second) continue;
+            const glm::dvec2 middle = 0.5 * (drawing.points[from] + drawing.points[to]);
+            if (result.onBorder[from] && result.onBorder[to] && depth(middle) <= options_.tolerance) continue;
+            const DrawnLine piece =
+                drawn[i].part(k == 0 ? 0.0 : partAt(from), k + 2 == chains[i].size() ? 1.0 : partAt(to));
+            result.lines.push_back({from, to, piece.start, piece.end, piece.edgeLength});
         }
     }
-    std::vector<FaceLine> divided;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-        const PlanarSegment& line = lines_[i].segment;
-        const glm::dvec2 d = line.to - line.from;
-        std::vector<std::pair<double, std::uint32_t>> stops{{0.0, ends[i].first}, {1.0, ends[i].second}};
-        for (std::uint32_t k = 0; k < result_.points.size(); ++k) {
-            if (k == ends[i].first || k == ends[i].second) continue;
-            const double t = glm::dot(result_.points[k] - line.from, d) / glm::dot(d, d);
-            if (t <= 0.0 || t >= 1.0) continue;
-            if (glm::distance(line.from + t * d, result_.points[k]) <= options_.tolerance) stops.emplace_back(t, k);
-        }
-        divideAt(i, std::move(stops), divided);
-    }
-    // Each once, also where two edges lie above each other.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> known;
-    for (const FaceLine& line : divided) {
-        const auto key = edgeKey(line.from, line.to);
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-        known.push_back(key);
-        if (!(result_.onBorder[line.from] && result_.onBorder[line.to] &&
-              depth(0.5 * (result_.points[line.from] + result_.points[line.to])) <= options_.tolerance))
-            result_.lines.push_back(line);
-    }
-    result_.vertices.assign(result_.points.size(), kNone);
-    return std::move(result_);
+    result.points = std::move(drawing.points);
+    result.vertices.assign(result.points.size(), kNone);
+    return result;
 }
 
 } // namespace lambert
