@@ -191,7 +191,10 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     if (!overlaps.empty() && !cut) baked.warnings.push_back(overlaps);
     for (const std::string& warning : baked.warnings) log.warning(warning);
     if (!overlaps.empty() && cut) log.line(overlaps);
-    log.line(fmt::format("{} patches, {}: {}", baked.mesh.size(), transportText(a, baked), solverText(baked)),
+    const std::size_t near = baked.meshReport.nearContactPatches;
+    log.line(fmt::format("{} patches{}, {}: {}", baked.mesh.size(),
+                         near > 0 ? fmt::format(" ({} for near contacts)", near) : "", transportText(a, baked),
+                         solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
     if (baked.repair) log.line(repairText(*baked.repair));
 

@@ -65,6 +65,9 @@ Json meshJson(const BakedScene& baked) {
             {"undivided_area", baked.meshReport.undividedArea},
             {"contact_polygons", baked.meshReport.contactPolygons},
             {"ignored_contact_polygons", baked.meshReport.ignoredContactPolygons},
+            {"near_contact_polygons", baked.meshReport.nearContactPolygons},
+            {"near_contact_patches", baked.meshReport.nearContactPatches},
+            {"near_contact_budget", baked.meshReport.nearContactBudget},
             {"degenerate_patches", baked.meshReport.degeneratePatches},
             {"hidden_patches", std::count(baked.mesh.hidden.begin(), baked.mesh.hidden.end(), true)},
             {"separated_faces", baked.separatedFaces}};

@@ -2,13 +2,11 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "meshing/contacts.h"
 #include "meshing/divide_polygon.h"
-#include "meshing/edge_division.h"
 #include "meshing/near_contacts.h"
 #include "meshing/patch_mesh_builder.h"
 #include "meshing/patch_surface.h"
-#include "meshing/prepare.h"
+#include "meshing/scene_division.h"
 
 #include <fmt/format.h>
 
@@ -26,80 +24,10 @@ namespace {
 
 constexpr double kMostPatches = 2e8;
 constexpr double kLongestOverEqual = 2.0;    ///< of a patch's length to that of as many equal squares
-constexpr double kMoreThanExpected = 1.3;    ///< room that is not used stays with the system
-constexpr double kDividedAtOnce = 65536;     ///< patches, so that they are hardly in memory twice
 constexpr double kMostForNearContacts = 2e4; ///< patches; the time to find their lines grows with the square
+constexpr double kLessExpected = 0.9;        ///< of the budget for near contacts if they took more than that
+constexpr int kMostAttempts = 4;             ///< to keep to it, before there are none
 constexpr double kUnrefined = std::numeric_limits<double>::infinity();
-
-/// What stands on a polygon or hovers over it, or null.
-template <class Contact>
-const Contact* contactOf(const std::vector<Contact>& contacts, std::uint32_t polygon) {
-    const auto it = std::lower_bound(contacts.begin(), contacts.end(), polygon,
-                                     [](const Contact& contact, std::uint32_t p) { return contact.polygon < p; });
-    return it != contacts.end() && it->polygon == polygon ? &*it : nullptr;
-}
-
-/// A scene to be divided, as finely as it takes.
-class SceneDivision {
-public:
-    /// `near` are the near contacts; their vertices are in the scene.
-    SceneDivision(const Scene& scene, bool splitContacts, const std::vector<NearContact>& near, Progress& progress,
-                  MeshReport& report)
-        : scene_(scene), index_(scene.positions), near_(near), progress_(progress), report_(report) {
-        if (splitContacts) contacts_ = findContacts(scene, index_);
-    }
-
-    /// Into patches about `length` metres long, of which there will be about `expected`; an earlier division is dropped.
-    void divide(double length, double expected) {
-        builder_.reset(); // two of them would take twice the memory
-        report_ = MeshReport{};
-        report_.patchLength = length;
-        builder_.emplace(scene_, static_cast<std::size_t>(kMoreThanExpected * expected), report_);
-        const EdgeDivision edges(scene_, index_, length, builder_->positions());
-        for (std::size_t first = 0; first < scene_.polygons.size();) {
-            const std::size_t count = someFrom(first);
-            divideSome(first, count, edges);
-            first += count;
-        }
-    }
-
-    std::size_t patchCount() const { return builder_->patchCount(); }
-    PatchMesh finish() { return builder_->finish(progress_); }
-
-private:
-    /// How many polygons make about kDividedAtOnce patches.
-    std::size_t someFrom(std::size_t first) const {
-        std::size_t end = first;
-        for (double patches = 0.0; end < scene_.polygons.size() && patches < kDividedAtOnce; ++end)
-            patches += 1.0 + polygonArea(scene_, scene_.polygons[end]) / (report_.patchLength * report_.patchLength);
-        return end - first;
-    }
-
-    void divideSome(std::size_t first, std::size_t count, const EdgeDivision& edges) {
-        const std::vector<glm::vec3>& positions = builder_->positions();
-        divided_.resize(count);
-        parallelFor(count, 1, [&](std::size_t begin, std::size_t end, int) {
-            progress_.throwIfCancelled();
-            for (std::size_t k = begin; k < end; ++k) {
-                const auto polygon = static_cast<std::uint32_t>(first + k);
-                const NearContact* near = contactOf(near_, polygon);
-                divided_[k] = dividePolygon(scene_, scene_.polygons[polygon], edges, contactOf(contacts_, polygon),
-                                            near != nullptr ? &near->lines : nullptr, report_.patchLength, positions);
-            }
-        });
-        const std::size_t known = positions.size();
-        for (DividedPolygon& polygon : divided_) builder_->add(std::exchange(polygon, {}), known);
-    }
-
-    const Scene& scene_;
-    VertexIndex index_;
-    std::vector<PlanarContact> contacts_; ///< in the polygons' order
-    const std::vector<NearContact>& near_;
-    Progress& progress_;
-    MeshReport& report_;
-    std::optional<PatchMeshBuilder> builder_;
-    std::vector<DividedPolygon> divided_;
-};
 
 PatchMesh keepPolygons(const Scene& scene, Progress& progress, MeshReport& report) {
     PatchMeshBuilder builder(scene, scene.polygons.size(), report);
@@ -189,20 +117,23 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
     if (!options.patchLength && options.patches == std::size_t{0}) return keepPolygons(scene, progress, counts);
 
     const Aim aim(scene, options);
-    NearContacts near;
-    if (options.splitContacts) near = findNearContacts(scene, aim.length, aim.forNearContacts());
-    std::optional<Scene> withVertices;
-    if (!near.vertices.empty()) {
-        withVertices = scene;
-        withVertices->positions.insert(withVertices->positions.end(), near.vertices.begin(), near.vertices.end());
+    const double budget = aim.forNearContacts();
+    std::optional<NearContactFinder> finder;
+    if (options.splitContacts) finder.emplace(scene, aim.length);
+    double expected = budget;
+    for (int attempt = 1;; ++attempt) {
+        SceneDivision division(scene, options.splitContacts, finder ? finder->find(expected) : NearContacts{}, progress,
+                               counts);
+        if (options.patchLength)
+            division.divide(aim.length, aim.patches);
+        else
+            divideToNumber(division, aim);
+        division.countNearContacts();
+        counts.nearContactBudget = finder ? static_cast<std::size_t>(budget) : 0;
+        const auto added = static_cast<double>(counts.nearContactPatches);
+        if (added <= budget) return division.finish();
+        expected *= attempt < kMostAttempts ? kLessExpected * budget / added : 0.0;
     }
-    SceneDivision division(withVertices ? *withVertices : scene, options.splitContacts, near.contacts, progress,
-                           counts);
-    if (options.patchLength)
-        division.divide(aim.length, aim.patches);
-    else
-        divideToNumber(division, aim);
-    return division.finish();
 }
 
 } // namespace

@@ -161,23 +161,61 @@ int stripLevels(double gap, const StripOptions& options) {
     return static_cast<int>(std::clamp(levels, 1.0, static_cast<double>(options.levels)));
 }
 
-FaceLines contactStrips(std::span<const glm::dvec2> border, std::span<const HoveringEdge> edges,
-                        std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts, const StripOptions& options) {
-    FaceDrawing lines(border, contacts, {options.tolerance, kClear, kShallow});
+namespace {
+
+/// Calls back with the edges that are drawn at each distance (metres), from the nearest on: the edges themselves, then strips.
+template <class DrawEdges, class DrawSides>
+void forEachLevel(std::span<const HoveringEdge> edges, const StripOptions& options, const DrawEdges& drawEdges,
+                  const DrawSides& drawSides) {
     // Strips of all edges end at the same distances, so that they join.
-    const auto levelOf = [&](const HoveringEdge& edge) { return edge.strips ? stripLevels(edge.gap, options) : 0; };
+    const auto levelOf = [&](const HoveringEdge& edge) {
+        return std::min(edge.levels, stripLevels(edge.gap, options));
+    };
     const double finest = std::ldexp(options.length, -options.levels);
     std::map<double, std::vector<HoveringEdge>> byGap;
     for (const HoveringEdge& edge : edges)
-        byGap[std::max(finest, edge.strips ? std::ldexp(options.length, -levelOf(edge)) : edge.gap)].push_back(edge);
-    for (const auto& [gap, alike] : byGap) Level(alike, gap, lines).drawEdges();
+        byGap[std::max(finest, edge.levels > 0 ? std::ldexp(options.length, -levelOf(edge)) : edge.gap)].push_back(
+            edge);
+    for (const auto& [gap, alike] : byGap) drawEdges(alike, gap);
     for (int level = options.levels; level >= 1; --level) {
         const double distance = std::ldexp(options.length, -level);
         if (distance < 8.0 * options.tolerance) continue;
         std::vector<HoveringEdge> drawn, others;
         for (const HoveringEdge& edge : edges) (levelOf(edge) >= level ? drawn : others).push_back(edge);
-        if (!drawn.empty()) Level(drawn, distance, lines).drawSides(others);
+        if (!drawn.empty()) drawSides(drawn, others, distance);
     }
+}
+
+} // namespace
+
+double patchesAlong(std::span<const HoveringEdge> edges, const StripOptions& options) {
+    double patches = 0.0;
+    const auto oneLine = [&](const std::vector<HoveringEdge>& drawn, double distance) {
+        double along = 0.0;
+        for (const Chain& chain : chainsOf(drawn)) {
+            const Chain simple = simplified(chain, kSimplified * distance);
+            for (std::size_t k = 0; k + 1 < simple.size(); ++k)
+                along += glm::distance(simple[k], simple[k + 1]) / options.length + 1.0;
+        }
+        return along;
+    };
+    forEachLevel(
+        edges, options, [&](const std::vector<HoveringEdge>& drawn, double gap) { patches += oneLine(drawn, gap); },
+        [&](const std::vector<HoveringEdge>& drawn, const std::vector<HoveringEdge>&, double distance) {
+            patches += 2.0 * oneLine(drawn, distance);
+        });
+    return patches;
+}
+
+FaceLines contactStrips(std::span<const glm::dvec2> border, std::span<const HoveringEdge> edges,
+                        std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts, const StripOptions& options) {
+    FaceDrawing lines(border, contacts, {options.tolerance, kClear, kShallow});
+    forEachLevel(
+        edges, options,
+        [&](const std::vector<HoveringEdge>& drawn, double gap) { Level(drawn, gap, lines).drawEdges(); },
+        [&](const std::vector<HoveringEdge>& drawn, const std::vector<HoveringEdge>& others, double distance) {
+            Level(drawn, distance, lines).drawSides(others);
+        });
     return std::move(lines).finish();
 }
 

@@ -12,8 +12,8 @@ namespace lambert {
 /// A piece of the outline of what hovers over a face, in the face's plane.
 struct HoveringEdge {
     glm::dvec2 from, to;
-    double gap = 0.0;    //!< metres to the face, > 0
-    bool strips = false; //!< whether it gets strips along it, or is followed alone
+    double gap = 0.0; //!< metres to the face, > 0
+    int levels = 0;   //!< most strips on each side of it
 };
 
 struct StripOptions {
@@ -24,6 +24,9 @@ struct StripOptions {
 
 /// How many strips an edge at this gap gets on each side. The first is half as wide as the gap.
 int stripLevels(double gap, const StripOptions& options);
+
+/// About how many patches lie beside the lines of contactStrips on a face without end.
+double patchesAlong(std::span<const HoveringEdge> edges, const StripOptions& options);
 
 /// Lines along the hovering edges and at distances from them, on both sides, that double from half the gap to half a patch's
 /// length.

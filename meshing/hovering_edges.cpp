@@ -56,11 +56,19 @@ struct Edges {
 
 glm::dvec3 normalOf(const PlaneFrame& frame) { return glm::cross(frame.axisX, frame.axisY); }
 
-bool emits(const Scene& scene, const Polygon& polygon) {
-    const auto shines = [&](std::uint32_t material) {
-        return material != kNone && scene.materials[material].emittedRadiance != Rgb(0.0F);
-    };
-    return shines(polygon.material) || shines(polygon.backMaterial);
+double emissionOf(const Scene& scene, const Polygon& polygon) {
+    double emission = 0.0;
+    for (const std::uint32_t material : {polygon.material, polygon.backMaterial}) {
+        if (material == kNone) continue;
+        const Rgb& radiance = scene.materials[material].emittedRadiance;
+        emission = std::max(emission, static_cast<double>(radiance.x + radiance.y + radiance.z) / 3.0);
+    }
+    return emission;
+}
+
+/// Half the polygon's smaller extent across its longest edge, at most `reach`: how near to it things hover that matter.
+double reachOver(const Scene& scene, const Polygon& polygon, double reach) {
+    return std::min(reach, 0.5 * polygonArea(scene, polygon) / lambert::longestEdge(scene, polygon));
 }
 
 /// Finds what hovers over one side of a polygon.
@@ -150,21 +158,31 @@ private:
         return {glm::dot(inward, normal_), glm::dot(glm::cross(along, inward), normal_) > 0.0};
     }
 
+    /// Whether a polygon is so little inclined to the one below that it is over it. Those of a ball that are have a rim
+    /// without gaps, none of whose edges is steep.
+    bool isOver(std::uint32_t polygon) const {
+        const double cosine = glm::dot(normalOf(planeFrame(scene_, scene_.polygons[polygon])), normal_);
+        return cosine * cosine >= 1.0 - kSteep * kSteep;
+    }
+
     /// Whether light passes below the edge: no surface goes down from it, and what is over the polygon ends there.
     bool isOpen(std::uint32_t edge) const {
         bool left = false, right = false;
         for (const std::uint32_t polygon : edges_.at(edge)) {
             if (polygon == below_) return false;
             const Rise rise = riseOf(polygon, edges_.keys[edge]);
-            if (rise.sine < -kSteep) return false;
-            if (rise.sine <= kSteep) (rise.left ? left : right) = true;
+            if (isOver(polygon))
+                (rise.left ? left : right) = true;
+            else if (rise.sine < 0.0)
+                return false;
         }
         return !(left && right);
     }
 
-    /// Whether a polygon at an edge shows the polygon below a side that is not black.
-    bool faces(std::uint32_t polygon, const Edge& edge) const {
-        if (isOccluder(scene_, scene_.polygons[polygon]) || std::abs(riseOf(polygon, edge).sine) > kSteep) return false;
+    /// Whether a polygon at an edge shows the polygon below a side that is not black and is larger than the gap.
+    bool faces(std::uint32_t polygon, double gap) const {
+        if (reachOver(scene_, scene_.polygons[polygon], reach_) < gap) return false;
+        if (isOccluder(scene_, scene_.polygons[polygon]) || !isOver(polygon)) return false;
         const double turned = glm::dot(normalOf(planeFrame(scene_, scene_.polygons[polygon])), normal_);
         return turned < 0.0 || scene_.polygons[polygon].backMaterial != kNone;
     }
@@ -183,10 +201,10 @@ private:
             outline.below = below_;
             outline.edges.push_back(rims[i].second);
             outline.length += glm::distance(rims[i].second.from, rims[i].second.to);
-            outline.emits = outline.emits || emits(scene_, scene_.polygons[below_]);
+            outline.emission = std::max(outline.emission, emissionOf(scene_, scene_.polygons[below_]));
             for (const std::uint32_t polygon : edges_.at(rims[i].first)) {
-                outline.emits = outline.emits || emits(scene_, scene_.polygons[polygon]);
-                if (faces(polygon, edges_.keys[rims[i].first])) outline.hovering.push_back(polygon);
+                outline.emission = std::max(outline.emission, emissionOf(scene_, scene_.polygons[polygon]));
+                if (faces(polygon, rims[i].second.gap)) outline.hovering.push_back(polygon);
             }
         }
         std::vector<Outline> outlines;
@@ -207,11 +225,6 @@ private:
     double reach_, least_;
     std::vector<glm::dvec2> border_;
 };
-
-/// Half the polygon's smaller extent across its longest edge, at most `reach`: how near to it things hover that matter.
-double reachOver(const Scene& scene, const Polygon& polygon, double reach) {
-    return std::min(reach, 0.5 * polygonArea(scene, polygon) / lambert::longestEdge(scene, polygon));
-}
 
 } // namespace
 

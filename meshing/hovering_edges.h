@@ -19,11 +19,12 @@ struct OutlineEdge {
 
 /// The outline of one object over a polygon: edges beyond which the gap between the two is open.
 struct Outline {
-    std::uint32_t below = 0;             //!< the polygon
-    std::vector<OutlineEdge> edges;      //!< connected
-    std::vector<std::uint32_t> hovering; //!< polygons at these edges that face the one below, ascending
-    double length = 0.0;                 //!< of all edges, metres
-    bool emits = false;                  //!< one of the polygons emits light
+    std::uint32_t below = 0;        //!< the polygon
+    std::vector<OutlineEdge> edges; //!< connected
+    std::vector<std::uint32_t>
+        hovering;          //!< polygons at these edges that face the one below, wider than twice the gap; ascending
+    double length = 0.0;   //!< of all edges, metres
+    double emission = 0.0; //!< brightest of the polygons' emitted radiance, mean of r, g, b; W m⁻² sr⁻¹
 };
 
 struct HoveringOutlines {

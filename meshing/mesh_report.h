@@ -12,6 +12,9 @@ struct MeshReport {
     std::size_t degeneratePatches = 0;      //!< dropped: no area in single precision
     std::size_t contactPolygons = 0;        //!< divided along contact lines
     std::size_t ignoredContactPolygons = 0; //!< their contact lines cross each other
+    std::size_t nearContactPolygons = 0;    //!< divided along the outlines of what hovers over them
+    std::size_t nearContactPatches = 0;     //!< more than without these outlines, those of backs included
+    std::size_t nearContactBudget = 0;      //!< most that may be more
 };
 
 } // namespace lambert

@@ -1,7 +1,7 @@
 #include "meshing/near_contacts.h"
 
 #include "core/parallel.h"
-#include "meshing/hovering_edges.h"
+#include "meshing/contact_strips.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
 #include "meshing/weld.h"
@@ -22,44 +22,52 @@ namespace {
 
 constexpr double kWeld = 4.0; ///< in the tolerance of the scene's vertices: points of lines keep more than that apart
 
-/// Patches along an outline, on both sides of it.
-double costOf(const Outline& outline, const StripOptions& options, bool strips) {
-    double cost = 0.0;
-    for (const OutlineEdge& edge : outline.edges) {
-        const double along = glm::distance(edge.from, edge.to) / options.length + 1.0;
-        const int rows = strips ? 2 * stripLevels(edge.gap, options) + 1 : 1;
-        cost += along * rows * (outline.hovering.empty() ? 1.0 : 2.0);
-    }
-    return cost;
+/// Patches along an outline, on all that show it.
+double costOf(const Scene& scene, const Outline& outline, const StripOptions& options, int levels) {
+    const PlaneFrame frame = planeFrame(scene, scene.polygons[outline.below]);
+    std::vector<HoveringEdge> edges;
+    for (const OutlineEdge& edge : outline.edges)
+        edges.push_back({frame.project(glm::vec3(edge.from)), frame.project(glm::vec3(edge.to)), edge.gap, levels});
+    return patchesAlong(edges, options) * (outline.hovering.empty() ? 1.0 : 2.0);
 }
 
 struct Chosen {
     const Outline* outline;
-    bool strips;
+    int levels; ///< most strips on each side
 };
 
-/// Which outlines are followed, and how: all of emitters before any strips, and these before what does not emit; the long ones
-/// first, as along them most patches would lie across.
-std::vector<Chosen> choose(const std::vector<Outline>& outlines, const StripOptions& options, double budget) {
+/// Which outlines are followed, and how: all of emitters before any strips, and these before what does not emit; first those
+/// along which most light leaves, or else the long ones, as along them most patches would lie across.
+/// Of strips there are as many as the budget allows.
+std::vector<Chosen> choose(const Scene& scene, const std::vector<Outline>& outlines, const StripOptions& options,
+                           double budget) {
+    const auto stake = [](const Outline& outline) {
+        return outline.length * (outline.emission > 0.0 ? outline.emission : 1.0);
+    };
     std::vector<std::size_t> order(outlines.size());
     std::iota(order.begin(), order.end(), 0U);
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return outlines[a].length > outlines[b].length; });
+                     [&](std::size_t a, std::size_t b) { return stake(outlines[a]) > stake(outlines[b]); });
     std::vector<std::size_t> place(outlines.size(), outlines.size()); // in `chosen`
     std::vector<Chosen> chosen;
     for (const bool emits : {true, false}) {
         for (const bool strips : {false, true}) {
             for (const std::size_t i : order) {
-                if (outlines[i].emits != emits || (strips && place[i] == outlines.size())) continue;
-                const double alone = costOf(outlines[i], options, false);
-                const double cost = strips ? costOf(outlines[i], options, true) - alone : alone;
-                if (cost > budget) continue;
-                budget -= cost;
-                if (strips) {
-                    chosen[place[i]].strips = true;
-                } else {
+                if ((outlines[i].emission > 0.0) != emits || (strips && place[i] == outlines.size())) continue;
+                const double alone = costOf(scene, outlines[i], options, 0);
+                if (!strips) {
+                    if (alone > budget) continue;
+                    budget -= alone;
                     place[i] = chosen.size();
-                    chosen.push_back({&outlines[i], false});
+                    chosen.push_back({&outlines[i], 0});
+                    continue;
+                }
+                for (int levels = options.levels; levels > 0; --levels) {
+                    const double more = costOf(scene, outlines[i], options, levels) - alone;
+                    if (more > budget) continue;
+                    budget -= more;
+                    chosen[place[i]].levels = levels;
+                    break;
                 }
             }
         }
@@ -76,10 +84,10 @@ std::vector<HoveringEdge> edgesInPlane(const PlaneFrame& frame, std::span<const 
         upper = glm::max(upper, p);
     }
     std::vector<HoveringEdge> edges;
-    for (const auto& [outline, strips] : chosen) {
+    for (const auto& [outline, levels] : chosen) {
         for (const OutlineEdge& edge : outline->edges) {
             const HoveringEdge flat{frame.project(glm::vec3(edge.from)), frame.project(glm::vec3(edge.to)), edge.gap,
-                                    strips};
+                                    levels};
             const glm::dvec2 first = glm::min(flat.from, flat.to), last = glm::max(flat.from, flat.to);
             if (first.x > upper.x + length || last.x < lower.x - length || first.y > upper.y + length ||
                 last.y < lower.y - length)
@@ -92,7 +100,7 @@ std::vector<HoveringEdge> edgesInPlane(const PlaneFrame& frame, std::span<const 
                 edges.push_back(flat);
             } else {
                 same->gap = std::min(same->gap, flat.gap);
-                same->strips = same->strips || flat.strips;
+                same->levels = std::max(same->levels, flat.levels);
             }
         }
     }
@@ -126,34 +134,36 @@ void addVertices(const Scene& scene, double tolerance, NearContacts& result) {
 
 } // namespace
 
-NearContacts findNearContacts(const Scene& scene, double length, double budget) {
+NearContactFinder::NearContactFinder(const Scene& scene, double length)
+    : scene_(scene), length_(length), found_(findHoveringOutlines(scene, length)) {}
+
+NearContacts NearContactFinder::find(double budget) const {
     NearContacts result;
-    const double tolerance = kWeld * static_cast<double>(weldTolerance(scene));
-    const StripOptions options{length, tolerance};
-    const HoveringOutlines found = findHoveringOutlines(scene, length);
+    const double tolerance = kWeld * static_cast<double>(weldTolerance(scene_));
+    const StripOptions options{length_, tolerance};
     std::map<std::uint32_t, std::vector<Chosen>> byPolygon;
-    for (const Chosen& chosen : choose(found.outlines, options, budget)) {
+    for (const Chosen& chosen : choose(scene_, found_.outlines, options, budget)) {
         byPolygon[chosen.outline->below].push_back(chosen);
         for (const std::uint32_t polygon : chosen.outline->hovering) byPolygon[polygon].push_back(chosen);
     }
     for (const auto& [polygon, chosen] : byPolygon) result.contacts.push_back({polygon, {}});
     parallelFor(result.contacts.size(), 1, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Polygon& polygon = scene.polygons[result.contacts[i].polygon];
-            const PlaneFrame frame = planeFrame(scene, polygon);
+            const Polygon& polygon = scene_.polygons[result.contacts[i].polygon];
+            const PlaneFrame frame = planeFrame(scene_, polygon);
             std::vector<glm::dvec2> border;
-            for (int k = 0; k < polygon.size(); ++k) border.push_back(frame.project(corner(scene, polygon, k)));
+            for (int k = 0; k < polygon.size(); ++k) border.push_back(frame.project(corner(scene_, polygon, k)));
             std::vector<std::pair<glm::dvec2, glm::dvec2>> touching;
-            if (const auto it = found.touching.find(result.contacts[i].polygon); it != found.touching.end())
+            if (const auto it = found_.touching.find(result.contacts[i].polygon); it != found_.touching.end())
                 for (const auto& [a, b] : it->second)
-                    touching.emplace_back(frame.project(scene.positions[a]), frame.project(scene.positions[b]));
+                    touching.emplace_back(frame.project(scene_.positions[a]), frame.project(scene_.positions[b]));
             result.contacts[i].lines =
-                contactStrips(border, edgesInPlane(frame, border, byPolygon.at(result.contacts[i].polygon), length),
+                contactStrips(border, edgesInPlane(frame, border, byPolygon.at(result.contacts[i].polygon), length_),
                               touching, options);
         }
     });
     std::erase_if(result.contacts, [](const NearContact& contact) { return contact.lines.lines.empty(); });
-    addVertices(scene, tolerance, result);
+    addVertices(scene_, tolerance, result);
     return result;
 }
 

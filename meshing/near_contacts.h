@@ -1,6 +1,7 @@
 #pragma once
 
-#include "meshing/contact_strips.h"
+#include "meshing/face_lines.h"
+#include "meshing/hovering_edges.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -19,11 +20,22 @@ struct NearContacts {
     std::vector<NearContact> contacts; //!< in the polygons' order
 };
 
-/// What hovers over polygons nearer to them than patches of `length` metres are long: a lamp below a ceiling, a cupboard before a
-/// wall, a rug, the legs of a table. Where light is shut up between two faces, a patch that reaches beyond the outline of one
-/// would carry it out, and so would a patch as long as the gap is narrow times many at its rim.
-///
-/// About `budget` patches more result at most: emitters come first, then long outlines, with strips if there are patches left.
-NearContacts findNearContacts(const Scene& scene, double length, double budget);
+/// Finds what hovers over polygons of a prepared scene nearer to them than patches of `length` metres are long: a lamp below a
+/// ceiling, a cupboard before a wall, a rug, the legs of a table. Where light is shut up between two faces, a patch that reaches
+/// beyond the outline of one would carry it out, and so would a patch as long as the gap is narrow times many at its rim.
+class NearContactFinder {
+public:
+    /// The scene outlives it.
+    NearContactFinder(const Scene& scene, double length);
+
+    /// About `budget` patches more result at most: emitters come first, those along which most light leaves before others, then
+    /// long outlines, with strips if there are patches left.
+    NearContacts find(double budget) const;
+
+private:
+    const Scene& scene_;
+    double length_;
+    HoveringOutlines found_;
+};
 
 } // namespace lambert

@@ -1,6 +1,7 @@
 #include "meshing/near_contacts.h"
 
 #include "mesh_checks.h"
+#include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
 #include "sample_scenes.h"
 #include "scene/ray_caster.h"
@@ -183,7 +184,7 @@ TEST(NearContacts, OutlinesGoOnAcrossTilesAndPiecesOfALamp) {
             outline[static_cast<std::size_t>(k)] = corner(one, piece, k);
         }
         EXPECT_EQ(areaAcross(mesh, tiles, outline, 5.0 * static_cast<double>(weldTolerance(one))), 0.0);
-        EXPECT_FALSE(findNearContacts(one, 0.4, 1000.0).vertices.empty()); // where lines pass from tile to tile
+        EXPECT_FALSE(NearContactFinder(one, 0.4).find(1000.0).vertices.empty()); // where lines pass from tile to tile
     }
 }
 
@@ -191,7 +192,7 @@ TEST(NearContacts, ASceneWithoutAnyKeepsItsPatches) {
     Scene scene = room();
     addBox(scene, {2.0F, 2.0F, 0.0F}, {4.0F, 3.0F, 1.0F}, true); // stands on the floor
     addBox(scene, {6.0F, 6.0F, 3.0F}, {7.0F, 7.0F, 4.0F}, true); // far from everything
-    const NearContacts near = findNearContacts(prepareScene(scene), 0.4, 1000.0);
+    const NearContacts near = NearContactFinder(prepareScene(scene), 0.4).find(1000.0);
     EXPECT_TRUE(near.contacts.empty());
     EXPECT_TRUE(near.vertices.empty());
 }
@@ -200,10 +201,10 @@ TEST(NearContacts, WhatReachesDownToTheSurfaceIsNoOutline) {
     // The front of a box that stands .05 m out of the wall x = 0: its sides close the gap.
     Scene frame = room();
     addBox(frame, {0.0F, 3.0F, 3.0F}, {0.05F, 4.0F, 4.0F}, true);
-    EXPECT_TRUE(findNearContacts(prepareScene(frame), 0.4, 1000.0).contacts.empty());
+    EXPECT_TRUE(NearContactFinder(prepareScene(frame), 0.4).find(1000.0).contacts.empty());
     Scene cupboard = room();
     addBox(cupboard, {0.05F, 3.0F, 3.0F}, {0.6F, 4.0F, 4.0F}, true);
-    EXPECT_EQ(findNearContacts(prepareScene(cupboard), 0.4, 1000.0).contacts.size(), 2U); // the wall and the back
+    EXPECT_EQ(NearContactFinder(prepareScene(cupboard), 0.4).find(1000.0).contacts.size(), 2U); // the wall and the back
 }
 
 TEST(NearContacts, SmallThingsDoNotUseUpThePatches) {
@@ -218,9 +219,97 @@ TEST(NearContacts, SmallThingsDoNotUseUpThePatches) {
     const PatchMesh mesh = meshOf(scene);
     EXPECT_NEAR(static_cast<double>(mesh.size()), wanted, 0.15 * wanted);
     // The lamp comes first: its ceiling is followed all the same.
-    const NearContacts near = findNearContacts(scene, 0.4, 500.0);
+    const NearContacts near = NearContactFinder(scene, 0.4).find(500.0);
     EXPECT_TRUE(std::any_of(near.contacts.begin(), near.contacts.end(),
                             [&](const NearContact& contact) { return scene.polygons[contact.polygon].material == 1; }));
+}
+
+/// 20 × 20 tiles of .3 m, each of `parts`² pieces with vertices of their own, with as many over them that lie across.
+Scene roomWithTiles(float gap, int parts) {
+    Scene scene = room();
+    for (int j = 0; j < 20 * parts; ++j)
+        for (int i = 0; i < 20 * parts; ++i) {
+            const float size = 0.3F / static_cast<float>(parts);
+            const glm::vec2 lower(1.0F + 1.1F * size * static_cast<float>(i),
+                                  1.0F + 1.1F * size * static_cast<float>(j));
+            addSheet(scene, lower, lower + size, 5.0F, false);
+            addSheet(scene, lower + 0.5F * size, lower + 1.5F * size, 5.0F + gap, (i + j) % 7 == 0);
+        }
+    return scene;
+}
+
+TEST(NearContacts, ManySmallPolygonsAddNoMoreThanTheBudget) {
+    for (const auto& [gap, parts] : {std::pair(0.01F, 1), {0.001F, 1}, {0.01F, 2}}) {
+        for (const std::optional<std::size_t> wanted : {std::optional<std::size_t>(), {4000}, {20000}}) {
+            SCOPED_TRACE(testing::Message()
+                         << "gap " << gap << ", parts " << parts << ", wanted " << wanted.value_or(0));
+            const Scene scene = prepareScene(roomWithTiles(gap, parts));
+            Progress progress;
+            MeshOptions options;
+            options.patches = wanted;
+            MeshReport report;
+            const PatchMesh mesh = buildPatchMesh(scene, options, progress, &report);
+            expectSoundMesh(scene, mesh);
+            EXPECT_GT(report.nearContactPatches, 0U);
+            EXPECT_LE(report.nearContactPatches, report.nearContactBudget);
+            EXPECT_LE(4 * report.nearContactBudget, wanted.value_or(defaultPatches(scene)));
+            // Nothing stands on anything: without contacts the scene is as it would be without those that are near.
+            options.patches.reset();
+            options.patchLength = report.patchLength;
+            options.splitContacts = false;
+            const std::size_t without = buildPatchMesh(scene, options, progress).size();
+            EXPECT_EQ(static_cast<std::int64_t>(mesh.size()) - static_cast<std::int64_t>(without),
+                      static_cast<std::int64_t>(report.nearContactPatches));
+        }
+    }
+}
+
+/// A ball of 10 cm, 2 cm below the ceiling, of 24 × 12 pieces about an axis that is neither upright nor level.
+Scene roomWithBall() {
+    Scene scene = room();
+    constexpr int kAround = 24, kDown = 12;
+    const glm::vec3 x(0.8F, 0.0F, -0.6F), y(0.0F, 1.0F, 0.0F), z(0.6F, 0.0F, 0.8F);
+    const auto at = [&](int i, int j) {
+        const float a = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i % kAround) / kAround;
+        const float b = std::numbers::pi_v<float> * static_cast<float>(j) / kDown;
+        const float round = j % kDown == 0 ? 0.0F : std::sin(b);
+        return glm::vec3(4.9F, 4.9F, kHeight - 0.07F) +
+               0.05F * (round * (std::cos(a) * x + std::sin(a) * y) + std::cos(b) * z);
+    };
+    for (int j = 0; j < kDown; ++j)
+        for (int i = 0; i < kAround; ++i) {
+            if (j > 0) addPolygon(scene, std::array<glm::vec3, 3>{at(i, j), at(i, j + 1), at(i + 1, j)});
+            if (j > 0) scene.polygons.back().material = 1;
+            if (j + 1 < kDown)
+                addPolygon(scene, std::array<glm::vec3, 3>{at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
+            scene.polygons.back().material = 1;
+        }
+    return scene;
+}
+
+TEST(NearContacts, TheRimOfABallHasNoGaps) {
+    const HoveringOutlines found = findHoveringOutlines(prepareScene(roomWithBall()), 0.35);
+    ASSERT_EQ(found.outlines.size(), 1U);
+    EXPECT_EQ(found.outlines[0].below, kCeiling);
+    EXPECT_TRUE(found.outlines[0].hovering.empty()) << "its pieces are smaller than the gap";
+    std::vector<glm::dvec3> ends;
+    for (const OutlineEdge& edge : found.outlines[0].edges) ends.insert(ends.end(), {edge.from, edge.to});
+    for (const glm::dvec3& end : ends) EXPECT_EQ(std::count(ends.begin(), ends.end(), end), 2);
+}
+
+TEST(NearContacts, TheBrighterLampComesFirst) {
+    Scene scene = roomWithLamp(0.01F);
+    scene.materials.push_back(scene.materials[1]);
+    scene.materials.back().emittedRadiance = Rgb(10000.0F);
+    addSheet(scene, {1.0F, 1.0F}, {1.5F, 1.5F}, kHeight - 0.01F, true);
+    scene.polygons.back().material = 3;
+    scene = prepareScene(scene);
+    const NearContacts near = NearContactFinder(scene, 0.4).find(30.0); // for one of the two
+    ASSERT_EQ(near.contacts.size(), 1U);
+    ASSERT_EQ(near.contacts[0].polygon, kCeiling);
+    const PlaneFrame frame = planeFrame(scene, scene.polygons[kCeiling]);
+    for (const glm::dvec2& point : near.contacts[0].lines.points)
+        EXPECT_LT(glm::distance(frame.lift(point), glm::vec3(1.25F, 1.25F, kHeight)), 1.0F);
 }
 
 } // namespace
