@@ -66,6 +66,43 @@ class LampBelowACeiling(RoomsTest):
         self.check(turned(self.room(1e-2), scale=1000.0), self.RIGHT[1e-2], "--unit", ".001")
 
 
+def ball(around, down, radius, middle):
+    """Vertices and faces of a ball as OBJ; faces count from vertex 9."""
+    def vertex(i, j):
+        a, b = 2 * math.pi * i / around, math.pi * j / down
+        p = (math.sin(b) * math.cos(a), math.sin(b) * math.sin(a), math.cos(b))
+        return "v " + " ".join(f"{m + radius * x:.9g}" for m, x in zip(middle, p)) + "\n"
+
+    def number(i, j):
+        return 9 if j == 0 else 10 + around * (down - 1) if j == down else 10 + around * (j - 1) + i % around
+
+    vertices = vertex(0, 0) + "".join(vertex(i, j) for j in range(1, down) for i in range(around)) + vertex(0, down)
+    faces = ""
+    for j in range(down):
+        for i in range(around):
+            corners = dict.fromkeys((number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)))
+            faces += "f " + " ".join(map(str, corners)) + "\n"
+    return vertices, faces
+
+
+class BallBelowACeiling(RoomsTest):
+    """A black ball of 10 cm that shines, 2 cm below the ceiling of a closed room of 10 m."""
+
+    RIGHT = {"floor": 0.0029583, "ceiling": 0.0071995, "wall": 0.0034709}  # mean irradiance per power, m⁻²
+
+    def test_light_of_all_surfaces(self):
+        mtl = "".join(f"newmtl {name}\nKd .6 .6 .6\n" for name in self.RIGHT) + "newmtl lamp\nKd 0 0 0\nKe 1000 1000 1000\n"
+        room = ("usemtl floor\nf 1 2 3 4\nusemtl ceiling\nf 5 8 7 6\n"
+                "usemtl wall\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n")
+        vertices, faces = ball(32, 16, 0.05, (4.9, 4.9, 9.93))
+        for variant in (lambda text: text, turned):
+            report = self.bake(self.scene(variant(BOX + vertices + room + "usemtl lamp\n" + faces), mtl))
+            for name, right in self.RIGHT.items():
+                with self.subTest(name):
+                    found = materials(report)[name]["mean_irradiance"][0] / report["energy"]["emitted"][0]
+                    self.assert_close(found, right, 0.01)
+
+
 class FactorsOfRooms(RoomsTest):
     def test_between_floor_and_wall_of_a_flat_hall(self):
         # 50 x 30 x .3 m; Howell's catalogue C-14, to 1 %.
