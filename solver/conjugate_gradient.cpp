@@ -184,7 +184,10 @@ RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFacto
     };
     /// The residual that was updated from step to step is not believed at start and end.
     const auto measure = [&] {
-        for (std::size_t i = 0; i < count; ++i) solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            z[i] = glm::max(z[i], RgbSum(0.0)); // no light is negative, though what is next to none may come out so
+            solution.radiosity[i] = problem.emitted(i) + system.reflected(i, z[i]);
+        }
         record(gatherResidual(problem, rows, solution, progress));
     };
     solution.radiosity.resize(count);

@@ -106,7 +106,8 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
             for (std::size_t g = 0; g < groups; ++g) sums[g] += batch[g];
             batches.add(before / static_cast<double>(kPatchPoints));
         } while (!enough());
-        for (RgbSum& e : sums) e /= static_cast<double>(batches.count()) * kPatchPoints;
+        // A channel may come out below 0 where little is seen of many colours.
+        for (RgbSum& e : sums) e = glm::max(e / (static_cast<double>(batches.count()) * kPatchPoints), RgbSum(0.0));
     };
     progress.begin("light of emitters", mesh.size());
     parallelFor(mesh.size(), 16, [&](std::size_t begin, std::size_t end, int) {
@@ -140,7 +141,7 @@ EstimatedLight EmitterLight::irradiance(const glm::vec3& point, const glm::vec3&
         for (const RgbSum& e : sums) batch += e;
         batches.add(batch);
     }
-    return {batches.mean(), batches.standardError()};
+    return {glm::max(batches.mean(), RgbSum(0.0)), batches.standardError()};
 }
 
 } // namespace lambert

@@ -41,8 +41,8 @@ class OtherPeoplesScenes(ProgramTest):
         self.assert_sane(SCENES / "holodeck" / "holodeck.obj", 0.05, "--resolution", "32")
 
     def test_staircase_bakes(self):
-        # Measured: 1 % with 16-pixel hemicubes.
-        self.assert_sane(SCENES / "staircase" / "staircase.obj", 0.05, "--resolution", "16")
+        # By random lines, in a third of the time that 16-pixel hemicubes take; these lose or make .3 %.
+        self.assert_sane(SCENES / "staircase" / "staircase.obj", 0.005, "--solver", "stochastic", "--target-error", ".05")
 
 
 if __name__ == "__main__":
