@@ -2,6 +2,7 @@
 
 #include "meshing/half_edge_mesh.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -116,7 +117,7 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
             weights += weight;
         }
         const double share = weights > 0.0 ? 1.0 / weights : 0.0;
-        const RgbSum e = share * irradiance;
+        const RgbSum e = glm::max(share * irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
         baked.irradiance.emplace_back(e);
         baked.radiosity.emplace_back(share * emitted + share * reflectance * e);
         const double length = glm::length(normal);
