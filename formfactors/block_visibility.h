@@ -19,7 +19,7 @@ namespace lambert {
 /// E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-traced radiosity", Eurographics Workshop on Rendering 1991.
 class BlockVisibility {
 public:
-    /// Points within `tolerance` (metres) of a plane count as in it. `scene` is that of `mesh`. Throws Cancelled.
+    /// Points within `tolerance` (metres) of a plane count as in it. `scene` is that of `mesh`.
     BlockVisibility(const Scene& scene, const PatchMesh& mesh, const PatchBlocks& blocks, double tolerance);
 
     /// Of all lines from patches of one block to patches of the other.

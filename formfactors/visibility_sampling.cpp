@@ -27,8 +27,9 @@ constexpr double kRate = 0.625;
 constexpr std::size_t kMostBlocks = 4096; ///< of which pairs are tested, to know what is hidden before any ray
 /// Of lines through the hemisphere to that of independent ones: they are spread evenly.
 constexpr double kLineVariance = 0.25;
-constexpr double kLineNoise = 0.02; ///< of the share that kRemainderLines find, at most
+constexpr double kLineNoise = 0.02; ///< of the share that kRemainderLines find: two and a half standard errors at most
 constexpr double kDoubt = 3.0;      ///< rows of so many times the error asked for are looked at again
+constexpr double kDisagreement = 4.0; ///< standard errors of a count
 constexpr int kMostRounds = 4;
 constexpr std::uint32_t kMostRaysPerPair = 1U << 20;
 constexpr std::uint32_t kRunLength = 16;  ///< neighbouring pairs that are judged together
@@ -294,8 +295,13 @@ private:
             while (entry != counted.entries.end() && entry->patch < pair.patch) ++entry;
             const bool isHit = entry != counted.entries.end() && entry->patch == pair.patch;
             const double value = isHit ? entry->value : 0.0;
-            pair.setCounted(value,
-                            std::sqrt(kLineVariance * std::max(value * (1.0 - value), 1.0 / kMoreLines) / kMoreLines));
+            const double noise =
+                std::sqrt(kLineVariance * std::max(value * (1.0 - value), 1.0 / kMoreLines) / kMoreLines);
+            const double factor = pair.factor;
+            const double deviation = 0.5 * factor * std::abs(pair.half(0) - pair.half(1));
+            const double disagreement = std::abs(value - factor * pair.visibleShare());
+            // Rays that agree among themselves may all have missed the gap.
+            if (deviation > noise || disagreement > kDisagreement * noise) pair.setCounted(value, noise);
         }
         assess();
     }
@@ -337,7 +343,8 @@ private:
         } else if (!(total > 0.0)) {
             accumulator.add(accumulator.back(), remainder);
         }
-        accumulator.setError(error_ + std::abs(target - sum));
+        // What was moved to close the row was wrong before, and may be in the wrong place now.
+        accumulator.setError(std::max(error_ + std::abs(target - sum), std::abs(target - sum_)));
     }
 
     std::array<std::uint32_t, 4> shiftOf(std::uint32_t patch, std::uint32_t phase) const {

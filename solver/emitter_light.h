@@ -36,9 +36,9 @@ public:
     /// The materials that emit, into Scene::materials, ascending.
     std::span<const std::uint32_t> materials() const { return tree_.groups(); }
 
-    /// The mean over each patch, #patches: over 16 points with 16 rays each, and up to 8 times as many where they differ. If
-    /// `byMaterial` is given, it becomes #materials × #patches: what comes from each; they add up to the result. The same whatever the
-    /// number of threads. Throws Cancelled.
+    /// The mean over each patch, #patches: over 16 points with 16 rays each, and up to 4 times as many where they differ and the
+    /// patches are no more than 30,000. If `byMaterial` is given, it becomes #materials × #patches: what comes from each; they add up
+    /// to the result. The same whatever the number of threads. Throws Cancelled.
     std::vector<RgbSum> irradiance(const PatchMesh& mesh, Progress& progress,
                                    std::vector<std::vector<RgbSum>>* byMaterial = nullptr) const;
 
