@@ -4,7 +4,7 @@
     scripts/quality_ladder.py [--program FILE] [--finer N] [--json FILE] [SCENE...] [-- OPTION...]
 
 The error of a preset is the area-weighted RMS, over materials and channels, of the difference of their mean irradiance from the reference's,
-relative to the RMS of the reference. The reference is the mean of four stochastic solutions (seeds 1 to 4) on N times the patches of
+relative to the RMS of the reference. The reference is the mean of four solutions by random walks (seeds 1 to 4) on N times the patches of
 `high` [4]; its own error is their standard error, without that of its mesh, which stands in the errors of all presets alike. Without scenes: those
 of data/, each in one of its formats. Options after -- go to every bake, for example -- --sky overcast. Exit status 1 if a preset is worse than a
 lower one by more than three times the reference's error. All of data/ takes long: minutes to hours of processor time.
@@ -30,7 +30,7 @@ def ladder(bakes, scene, finer):
     """Errors and CPU seconds of the presets, and the reference's own error."""
     reports = [bakes.report(scene, "--quality", preset) for preset in PRESETS]
     patches = str(round(finer * reports[-1]["patches"]))
-    tables = [materials_of(bakes.report(scene, "--quality", "high", "--solver", "stochastic", "--patches", patches,
+    tables = [materials_of(bakes.report(scene, "--quality", "high", "--solver", "random-walk", "--patches", patches,
                                         "--seed", str(seed))) for seed in SEEDS]
     reference, own = mean_of(tables), standard_error(tables)
     errors = [relative_error(materials_of(report), reference) for report in reports]

@@ -21,7 +21,7 @@ class FakeBakes:
 
     def report(self, _, *options):
         self.asked.append(options)
-        if "stochastic" in options:
+        if "random-walk" in options:
             light = 1 + (self.own if int(options[-1]) % 2 else -self.own)
         else:
             light = 1 + self.by_preset[options[1]]
