@@ -1,7 +1,7 @@
 #include "baking/encode.h"
 #include "baking/exposure.h"
-#include "baking/gltf_writer.h"
-#include "scene/input_file.h"
+#include "core/text.h"
+#include "scene/gltf/writer.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -1,5 +1,6 @@
 #include "baking/encode.h"
 #include "baking/exposure.h"
+#include "picture/srgb.h"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>

@@ -1,6 +1,7 @@
-#include "baking/byte_writer.h"
 #include "baking/encode.h"
 #include "baking/exposure.h"
+#include "core/byte_writer.h"
+#include "picture/srgb.h"
 
 #include <fmt/format.h>
 

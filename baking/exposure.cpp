@@ -92,9 +92,4 @@ Rgb displayColour(const Rgb& radiance, float ev) {
     return colour;
 }
 
-float srgbEncode(float linear) {
-    const float x = std::clamp(linear, 0.0F, 1.0F);
-    return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F;
-}
-
 } // namespace lambert

@@ -15,7 +15,4 @@ float automaticExposure(const BakedMesh& mesh, Quantity quantity);
 /// any finite number.
 Rgb displayColour(const Rgb& radiance, float ev);
 
-/// The transfer curve of IEC 61966-2-1: a linear value in [0, 1] to the encoded one, in [0, 1].
-float srgbEncode(float linear);
-
 } // namespace lambert

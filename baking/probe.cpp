@@ -35,7 +35,7 @@ struct SurfacePoint {
 };
 
 /// The front nearest to the point along its normal, within `reach` on either side.
-std::optional<SurfacePoint> nearestFront(const BakedScene& scene, const glm::vec3& position, const glm::vec3& normal,
+std::optional<SurfacePoint> nearestFront(const SolvedScene& scene, const glm::vec3& position, const glm::vec3& normal,
                                          float reach) {
     std::optional<SurfacePoint> best;
     float bestDistance = reach;
@@ -61,12 +61,13 @@ double sum(const RgbSum& v) { return v.x + v.y + v.z; }
 /// The whole light, in parts that can be had at a point, and the rest.
 class Probe {
 public:
-    Probe(const BakedScene& scene, const BakeOptions& options, Progress& progress)
+    Probe(const SolvedScene& scene, const SolveOptions& options, const ReconstructionOptions& reconstruction,
+          Progress& progress)
         : scene_(scene),
           lights_(*scene.rays, options.directLight),
-          emitters_(*scene.rays, scene.mesh, options.directLight.seed),
-          method_(makeMethod(planOf(scene, options, progress), scene.mesh, *scene.rays)),
-          distinctRows_(options.formFactors.transport.method != TransportMethod::ClosedForm),
+          emitters_(*scene.rays, scene.mesh, scene.optics, options.directLight.seed),
+          plan_(planOf(scene, options, progress)),
+          method_(makeMethod(plan_, scene.mesh, *scene.rays)),
           accumulators_(static_cast<std::size_t>(threadCount()), RowAccumulator(scene.mesh.size())) {
         const std::vector<RgbSum> direct =
             scene.emittersIrradiance.empty() ? emitters_.irradiance(scene.mesh, progress) : scene.emittersIrradiance;
@@ -76,7 +77,7 @@ public:
         for (std::size_t i = 0; i < direct.size(); ++i) reflected.irradiance[i] -= direct[i];
         for (std::size_t i = 0; i < scene.lightsIrradiance.size(); ++i)
             reflected.irradiance[i] -= scene.lightsIrradiance[i];
-        vertexIrradiance_ = reconstructAverage(scene.mesh, *scene.scene, reflected, options.reconstruction).irradiance;
+        reflected_ = reconstructAverage(scene.mesh, scene.optics, *scene.scene, reflected, reconstruction);
         patchIrradiance_ = std::move(reflected.irradiance);
     }
 
@@ -94,8 +95,8 @@ public:
         reading.irradiance = glm::max(reading.irradiance + interpolated(point.patch, point.position), 0.0);
         RgbSum error = interpolated(point.patch, mesh.centroid[point.patch]) - patchIrradiance_[point.patch];
         RgbSum squares = reading.standardError * reading.standardError + error * error;
-        if (scene_.stochastic) {
-            error = RgbSum(scene_.stochastic->standardError[point.patch]);
+        if (const StochasticSolution* lines = scene_.stochastic()) {
+            error = RgbSum(lines->standardError[point.patch]);
             squares += error * error;
         }
         reading.standardError = glm::sqrt(squares);
@@ -105,7 +106,7 @@ public:
     ProbeReading inSpace(const glm::vec3& point, const glm::vec3& normal, std::uint32_t index, int worker) {
         RowAccumulator& accumulator = accumulators_[static_cast<std::size_t>(worker)];
         const float lift = scene_.rays->originOffset(0.0F);
-        const auto count = static_cast<std::uint32_t>(distinctRows_ ? kRows : 1);
+        const auto count = static_cast<std::uint32_t>(plan_.options.method == TransportMethod::ClosedForm ? 1 : kRows);
         RgbSum total(0.0), squares(0.0);
         double back = 0.0;
         FormFactorRow row;
@@ -114,7 +115,7 @@ public:
             accumulator.take(row);
             RgbSum gathered(0.0);
             for (const auto& [patch, factor] : row.entries)
-                gathered += factor * (scene_.solution.radiosity[patch] - RgbSum(scene_.mesh.emittedRadiosity[patch]));
+                gathered += factor * (scene_.solution.radiosity[patch] - RgbSum(scene_.optics.emittedRadiosity[patch]));
             total += gathered;
             squares += gathered * gathered;
             back += row.back / count;
@@ -139,8 +140,9 @@ private:
     }
 
     /// As fine as the options allow, now that there are few rows; where they have none for points, by local lines.
-    static TransportPlan planOf(const BakedScene& scene, const BakeOptions& options, Progress& progress) {
-        TransportOptions transport = options.formFactors.transport;
+    static TransportPlan planOf(const SolvedScene& scene, const SolveOptions& options, Progress& progress) {
+        const auto* const factors = std::get_if<FormFactorLight>(&options.method);
+        TransportOptions transport = factors != nullptr ? factors->formFactors.transport : TransportOptions{};
         transport.stored = false;
         transport.mostRays = std::numeric_limits<double>::max();
         transport.randomRotation = true; // or all rows of a point are one
@@ -153,10 +155,10 @@ private:
 
     RgbSum interpolated(std::uint32_t patch, const glm::vec3& position) const {
         const InterpolationWeights weights = interpolationWeights(scene_.mesh, patch, position);
-        const auto& corners = scene_.baked.faces[patch];
+        const auto& corners = reflected_.faces[patch];
         RgbSum result(0.0);
         for (std::size_t k = 0; k < 4; ++k)
-            if (corners[k] != kNone) result += weights[k] * RgbSum(vertexIrradiance_[corners[k]]);
+            if (corners[k] != kNone) result += weights[k] * RgbSum(reflected_.irradiance[corners[k]]);
         return result;
     }
 
@@ -174,22 +176,23 @@ private:
         return reading;
     }
 
-    const BakedScene& scene_;
+    const SolvedScene& scene_;
     DirectLight lights_;
     EmitterLight emitters_;
+    TransportPlan plan_;
     std::unique_ptr<FormFactorMethod> method_;
-    bool distinctRows_; ///< rows of other numbers differ
     std::vector<RowAccumulator> accumulators_;
     std::vector<RgbSum> patchIrradiance_; ///< #patches, without direct light
-    std::vector<Rgb> vertexIrradiance_;   ///< the same, #vertices of the baked mesh
+    BakedMesh reflected_;                 ///< the same at vertices
 };
 
 } // namespace
 
-std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, const BakeOptions& options,
+std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const SolveOptions& options,
+                                          const ReconstructionOptions& reconstruction,
                                           std::span<const ProbePoint> points, Progress& progress) {
     const float reach = kOnSurface * scene.rays->bounds().diagonal();
-    Probe probe(scene, options, progress);
+    Probe probe(scene, options, reconstruction, progress);
     std::vector<ProbeReading> readings(points.size());
     progress.begin("probe", points.size());
     parallelFor(points.size(), 4, [&](std::size_t begin, std::size_t end, int worker) {

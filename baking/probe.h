@@ -1,6 +1,7 @@
 #pragma once
 
-#include "baking/bake_scene.h"
+#include "baking/reconstruction.h"
+#include "lighting/solve_scene.h"
 
 #include <span>
 #include <vector>
@@ -23,12 +24,14 @@ struct ProbeReading {
 
 /// The irradiance at points, #points readings. Direct light, of emitters and of lights without area, is found at the point itself by
 /// shadow rays. All other light is interpolated between the vertices of the patch, at points on surfaces, and gathered at
-/// others, by rows of the form factors that `options` (those of the bake) name. Of lines without rows: by local lines.
+/// others, by rows of the form factors that `options` (those of the solve) name; if they name none, by those of the default
+/// method, and of lines without rows by local lines.
 ///
 /// Errors are of shadow rays, and of gathered rows by the spread of four with other random numbers. On a surface they hold by how
 /// much interpolation misses the patch's own value at its centre, which is as much of the mesh and of a noisy row as can be
 /// told, and the patch's standard error where the solution has one. Throws UsageError, Cancelled.
-std::vector<ProbeReading> probeIrradiance(const BakedScene& scene, const BakeOptions& options,
+std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const SolveOptions& options,
+                                          const ReconstructionOptions& reconstruction,
                                           std::span<const ProbePoint> points, Progress& progress);
 
 } // namespace lambert

@@ -80,8 +80,9 @@ private:
 
 } // namespace
 
-BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const RadiositySolution& solution,
-                             const ReconstructionOptions& options, std::size_t* separatedFaces) {
+BakedMesh reconstructAverage(const PatchMesh& mesh, const PatchOptics& optics, const Scene& scene,
+                             const RadiositySolution& solution, const ReconstructionOptions& options,
+                             std::size_t* separatedFaces) {
     BakedMesh baked = makeVertices(mesh, options.creaseAngle, separatedFaces);
     baked.origin = scene.origin;
     baked.materials = scene.materials;
@@ -93,7 +94,7 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
             if (mesh.hidden[patch]) baked.opacity[patch] = 0.0F;
     }
     baked.emitters.reserve(mesh.size());
-    for (const Rgb& b : mesh.emittedRadiosity) baked.emitters.push_back(b != Rgb(0.0F));
+    for (const Rgb& b : optics.emittedRadiosity) baked.emitters.push_back(b != Rgb(0.0F));
 
     const VertexCorners around(mesh, baked);
     const std::size_t count = baked.positions.size();
@@ -111,8 +112,8 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const Ra
                 static_cast<double>(mesh.area[patch]) * angleAt(mesh, patch, static_cast<int>(corner % 4));
             const double weight = whole * openness;
             irradiance += weight * solution.irradiance[patch];
-            reflectance += weight * RgbSum(mesh.reflectance[patch]);
-            emitted += weight * RgbSum(mesh.emittedRadiosity[patch]);
+            reflectance += weight * RgbSum(optics.reflectance[patch]);
+            emitted += weight * RgbSum(optics.emittedRadiosity[patch]);
             normal += whole * glm::dvec3(mesh.normal[patch]);
             weights += weight;
         }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "baking/baked_mesh.h"
-#include "meshing/patch_mesh.h"
+#include "meshing/patch_optics.h"
 #include "solver/solution.h"
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 namespace lambert {
 
 struct ReconstructionOptions {
-    float creaseAngle = 0.52F; //!< radians; across a sharper edge nothing is averaged; 0 to π, default 30°
+    float creaseAngle = 0.52359878F; //!< radians; across a sharper edge nothing is averaged; 0 to π, default 30°
     bool keepHidden = false;   //!< hidden patches (see PatchMesh) are faces like others, not holes
 };
 
@@ -19,7 +19,8 @@ struct ReconstructionOptions {
 ///
 /// Face i of the result is patch i of the mesh. `separatedFaces`, if given, becomes the number of patches that could not
 /// be connected to their neighbours.
-BakedMesh reconstructAverage(const PatchMesh& mesh, const Scene& scene, const RadiositySolution& solution,
-                             const ReconstructionOptions& options, std::size_t* separatedFaces = nullptr);
+BakedMesh reconstructAverage(const PatchMesh& mesh, const PatchOptics& optics, const Scene& scene,
+                             const RadiositySolution& solution, const ReconstructionOptions& options,
+                             std::size_t* separatedFaces = nullptr);
 
 } // namespace lambert

@@ -2,6 +2,7 @@
 
 #include "baking/encode.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "core/whole_file.h"
 
 #include <fmt/format.h>
@@ -48,9 +49,7 @@ void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat
 } // namespace
 
 std::optional<BakedFormat> formatOf(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(path.extension().string());
     if (extension == ".glb") return BakedFormat::Glb;
     if (extension == ".gltf") return BakedFormat::Gltf;
     if (extension == ".ply") return BakedFormat::Ply;

@@ -1,9 +1,7 @@
 #pragma once
 
-#include "scene/packet_width.h"
+#include "scene/rays/packet_width.h"
 #include "scene/scene.h"
-
-#include <embree3/rtcore.h>
 
 #include <cstdint>
 

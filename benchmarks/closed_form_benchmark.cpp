@@ -8,7 +8,7 @@
 #include "formfactors/closed_form_method.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
-#include "scene/example_scenes.h"
+#include "tests/scene/grid_scene.h"
 
 #include <benchmark/benchmark.h>
 

@@ -3,10 +3,11 @@
 #include "core/parallel.h"
 #include "formfactors/form_factor_method.h"
 #include "meshing/build_patch_mesh.h"
+#include "meshing/patch_optics.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
-#include "scene/scene_reader.h"
+#include "scene/rays/ray_caster.h"
+#include "scene/reading/scene_reader.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -103,10 +104,12 @@ struct BenchmarkScene {
         options.patches = patches;
         Progress progress;
         mesh = buildPatchMesh(scene, options, progress);
+        optics = patchOptics(scene, mesh);
     }
     Scene scene;
     RayCaster rays;
     PatchMesh mesh;
+    PatchOptics optics;
 };
 
 /// Registers a comparison on the closed cube, the table room, the Cornell box, and the staircase if LAMBERT_SCENES has it.

@@ -7,7 +7,7 @@
 
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
-#include "rendering/camera_rays.h"
+#include "picture/camera_rays.h"
 #include "rendering/default_camera.h"
 #include "vpl/gather.h"
 #include "vpl/particle_sources.h"
@@ -79,9 +79,8 @@ std::vector<RTCRay16> bareRays(const std::vector<VirtualPointLight>& lights, std
 }
 
 std::size_t trace(RTCScene scene, std::vector<RTCRay16>& packets) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    QueryContext context;
+    beginQuery(context);
     std::size_t rays = 0;
     for (RTCRay16& packet : packets) {
         alignas(64) int valid[16];
@@ -89,7 +88,7 @@ std::size_t trace(RTCScene scene, std::vector<RTCRay16>& packets) {
             valid[lane] = packet.id[lane] != 0 ? -1 : 0;
             rays += packet.id[lane];
         }
-        rtcOccluded16(valid, scene, &context, &packet);
+        occluded(valid, scene, context, Likeness::Coherent, packet);
     }
     return rays;
 }

@@ -11,7 +11,7 @@
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
 #include "formfactors/global_lines.h"
-#include "scene/packet_width.h"
+#include "scene/rays/packet_width.h"
 
 namespace lambert {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kLines = 1U << 20;
 
 struct HitList {
-    RTCIntersectContext context;
+    QueryContext context;
     std::array<std::vector<Crossing>, LinePacket::kSize> crossings;
 };
 
@@ -42,7 +42,7 @@ void noteHit(const RTCFilterFunctionNArguments* arguments) {
 
 std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
     HitList list;
-    rtcInitIntersectContext(&list.context);
+    beginQuery(list.context);
     alignas(64) RTCRay16 rays;
     std::size_t hits = 0;
     for (const LinePacket& packet : packets) {
@@ -53,7 +53,7 @@ std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
         std::copy_n(packet.directionX, 16, rays.dir_x);
         std::copy_n(packet.directionY, 16, rays.dir_y);
         std::copy_n(packet.directionZ, 16, rays.dir_z);
-        rtcOccluded16(packet.active, scene, &list.context, &rays);
+        occluded(packet.active, scene, list.context, Likeness::None, rays);
         for (std::vector<Crossing>& crossings : list.crossings) {
             hits += crossings.size();
             crossings.clear();
@@ -64,7 +64,7 @@ std::size_t trace(RTCScene scene, const std::vector<LinePacket>& packets) {
 
 void traceSingly(RTCScene scene, const std::vector<LinePacket>& packets) {
     HitList list;
-    rtcInitIntersectContext(&list.context);
+    beginQuery(list.context);
     for (const LinePacket& packet : packets) {
         for (unsigned lane = 0; lane < 16; ++lane) {
             RTCRay ray{};
@@ -76,7 +76,7 @@ void traceSingly(RTCScene scene, const std::vector<LinePacket>& packets) {
             ray.dir_z = packet.directionZ[lane];
             ray.tfar = 1.0F;
             ray.mask = ~0U;
-            rtcOccluded1(scene, &list.context, &ray);
+            occluded(scene, list.context, ray);
             list.crossings[0].clear();
         }
     }

@@ -10,7 +10,7 @@
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "formfactors/hemicube.h"
-#include "scene/packet_width.h"
+#include "scene/rays/packet_width.h"
 #include "solver/jacobi.h"
 
 #include <algorithm>
@@ -26,9 +26,8 @@ constexpr int kResolution = 128;
 /// Traces the packets; returns how many rays hit.
 std::size_t trace(RTCScene scene, const glm::vec3& origin, const std::vector<RayPacket>& packets,
                   PacketWidth width = PacketWidth::Sixteen) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    QueryContext context;
+    beginQuery(context);
     alignas(64) RTCRayHit16 rays;
     std::size_t hits = 0;
     for (const RayPacket& packet : packets) {
@@ -39,7 +38,7 @@ std::size_t trace(RTCScene scene, const glm::vec3& origin, const std::vector<Ray
         std::copy_n(packet.directionX, 16, rays.ray.dir_x);
         std::copy_n(packet.directionY, 16, rays.ray.dir_y);
         std::copy_n(packet.directionZ, 16, rays.ray.dir_z);
-        intersectPacket(width, packet.active, scene, context, rays);
+        intersectPacket(width, packet.active, scene, context, Likeness::Coherent, rays);
         for (int lane = 0; lane < 16; ++lane) hits += rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
     }
     return hits;
@@ -105,7 +104,7 @@ void largeMatrix(benchmark::State& state) {
         const FormFactorMatrix matrix = computeMatrix(hemicube, MatrixStorage::Compact, progress);
         state.counters["form_factors_s"] = watch.lap();
         StoredRows rows(matrix);
-        const RadiositySolution solution = solveJacobi(SolverProblem(scene.mesh), rows, {}, progress);
+        const RadiositySolution solution = solveJacobi(SolverProblem({scene.mesh, scene.optics}), rows, {}, progress);
         state.counters["jacobi_s"] = watch.lap();
         state.counters["residual"] = solution.residual;
     }

@@ -2,7 +2,7 @@
 
 #include "benchmarks/bare_embree.h"
 #include "core/random.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace lambert {
 
 /// Traces rays one by one and throws the hits away: returns how many there were.
 inline std::size_t countHits(const BareEmbree& scene, const std::vector<Ray>& rays) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    QueryContext context;
+    beginQuery(context);
     std::size_t hits = 0;
     for (const Ray& ray : rays) {
         RTCRayHit query{};
@@ -27,7 +27,7 @@ inline std::size_t countHits(const BareEmbree& scene, const std::vector<Ray>& ra
         query.ray.tfar = 1e30F;
         query.ray.mask = ~0U;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene.handle(), &context, &query);
+        intersect(scene.handle(), context, query);
         hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
     }
     return hits;

@@ -3,7 +3,7 @@
 /// benchmark at a time (--benchmark_filter=ReadObj/plain/1000) to measure memory.
 
 #include "core/process.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/os.h>

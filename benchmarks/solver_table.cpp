@@ -3,13 +3,13 @@
 //     build/benchmarks/solver_table SCENE PATCHES RESOLUTION [REFLECTANCE]
 //
 // REFLECTANCE replaces that of all materials.
-#include "baking/mesh_scene.h"
 #include "core/error.h"
 #include "core/process.h"
 #include "formfactors/hemicube.h"
 #include "formfactors/repair.h"
 #include "formfactors/transport.h"
-#include "scene/scene_reader.h"
+#include "meshing/mesh_scene.h"
+#include "scene/reading/scene_reader.h"
 #include "solver/computed_rows.h"
 #include "solver/gauss_seidel.h"
 #include "solver/solver.h"
@@ -57,7 +57,7 @@ int run(int argc, char** argv) {
     fmt::print("{}: {} patches, {} factors, computed in {:.1f} CPU s\n\n", argv[1], mesh.size(), matrix.entryCount(),
                seconds);
     fmt::print("| solver | iterations | CPU s | residual |\n|---|---|---|---|\n");
-    const SolverProblem problem(mesh);
+    const SolverProblem problem({mesh, meshed.optics});
     StoredRows rows(matrix);
     for (const std::string& name : solverNames()) {
         SolverOptions options;

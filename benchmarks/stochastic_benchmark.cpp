@@ -33,7 +33,7 @@ void compareExchange(benchmark::State& state, const BenchmarkScene& scene) {
     const PatchMesh& mesh = scene.mesh;
     std::vector<Sender> senders(mesh.size());
     for (std::size_t i = 0; i < mesh.size(); ++i)
-        senders[i] = {Rgb(1.0F) + mesh.reflectance[i], static_cast<float>(kRaysPerPatch) / mesh.area[i]};
+        senders[i] = {Rgb(1.0F) + scene.optics.reflectance[i], static_cast<float>(kRaysPerPatch) / mesh.area[i]};
     LocalExchange exchange(mesh, scene.rays, Sampler::Sobol);
     FixedPointSums received(mesh.size());
     LineCounts counts(mesh.size());

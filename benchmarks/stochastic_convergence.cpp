@@ -3,7 +3,7 @@
 
 #include "baking/bake_scene.h"
 #include "baking/probe.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "solver/stochastic_relaxation.h"
 
 #include <CLI/CLI.hpp>
@@ -52,13 +52,12 @@ std::vector<Reference> readReference(const std::string& path, const RayCaster& r
 }
 
 /// RMS of the difference of ρE over the mean of ρE, as the figures of other programs are given; of green light.
-double errorAtPoints(BakedScene& scene, const std::vector<Reference>& reference) {
+double errorAtPoints(SolvedScene& scene, const std::vector<Reference>& reference) {
     if (reference.empty()) return 0.0;
-    scene.baked = reconstructAverage(scene.mesh, *scene.scene, scene.solution, {});
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
     Progress progress;
-    const std::vector<ProbeReading> readings = probeIrradiance(scene, {}, points, progress);
+    const std::vector<ProbeReading> readings = probeIrradiance(scene, {}, {}, points, progress);
     double squares = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         const double difference = readings[i].irradiance.y - reference[i].irradiance.y;
@@ -93,24 +92,23 @@ struct Arguments {
     bool random = false;
 };
 
-BakedScene meshed(const Arguments& a, std::size_t patches) {
+SolvedScene meshed(const Arguments& a, std::size_t patches) {
     MeshOptions options;
     options.patches = patches;
     Progress progress;
-    return BakedScene{meshLitScene(readScene(a.scene).scene, options, progress)};
+    return SolvedScene{meshLitScene(readScene(a.scene).scene, options, progress)};
 }
 
 /// Replaces the irradiance of the points by that of a solution on a finer mesh, and drops those that are on no surface.
 void takeFromFinerMesh(const Arguments& a, std::vector<Reference>& reference) {
-    BakedScene fine = meshed(a, a.finePatches);
+    SolvedScene fine = meshed(a, a.finePatches);
     Progress progress;
     fine.solution =
-        solveStochasticRelaxation(SolverProblem(fine.mesh), *fine.rays,
+        solveStochasticRelaxation(SolverProblem({fine.mesh, fine.optics}), fine.mesh, *fine.rays,
                                   {.rays = static_cast<std::uint64_t>(a.converged), .seed = 2000}, progress);
-    fine.baked = reconstructAverage(fine.mesh, *fine.scene, fine.solution, {});
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
-    const std::vector<ProbeReading> readings = probeIrradiance(fine, {}, points, progress);
+    const std::vector<ProbeReading> readings = probeIrradiance(fine, {}, {}, points, progress);
     std::vector<Reference> kept;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         reference[i].irradiance = readings[i].irradiance;
@@ -121,7 +119,7 @@ void takeFromFinerMesh(const Arguments& a, std::vector<Reference>& reference) {
 
 void run(const Arguments& a) {
     Progress progress;
-    BakedScene scene = meshed(a, a.patches);
+    SolvedScene scene = meshed(a, a.patches);
     std::vector<Reference> reference =
         a.points.empty() ? std::vector<Reference>{} : readReference(a.points, *scene.rays);
     if (a.finePatches > 0) takeFromFinerMesh(a, reference);
@@ -132,7 +130,8 @@ void run(const Arguments& a) {
         o.sampler = a.random ? Sampler::Random : Sampler::Sobol;
         o.rays = static_cast<std::uint64_t>(rays);
         o.seed = seed;
-        return solveStochasticRelaxation(SolverProblem(scene.mesh), *scene.rays, o, progress);
+        return solveStochasticRelaxation(SolverProblem({scene.mesh, scene.optics}), scene.mesh, *scene.rays, o,
+                                         progress);
     };
     const StochasticSolution converged = solve(a.converged, 1000, "local");
     scene.solution = converged;

@@ -1,7 +1,7 @@
 #include "cli/analytic_cases.h"
 
-#include "baking/bake_scene.h"
 #include "formfactors/hemicube.h"
+#include "lighting/solve_scene.h"
 #include "scene/example_scenes.h"
 
 #include <fmt/format.h>
@@ -24,22 +24,24 @@ void add(Results& results, std::string name, double expected, double found, doub
 /// B = B_e / (1 − ρ) in a closed box of one material.
 void furnace(Results& results, Progress& progress) {
     const Material wall = greyMaterial("wall", 0.5F, 1.0F);
-    BakeOptions options;
+    FormFactorLight method;
+    method.solver.tolerance = 1e-7;
+    SolveOptions options;
     options.mesh.patches = 1000;
-    options.solver.tolerance = 1e-7;
-    const BakedScene baked =
-        bakeScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
+    options.method = method;
+    const SolvedScene solved =
+        solveScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
     double lowest = 1e30;
     double highest = 0.0;
-    for (const RgbSum& b : baked.solution.radiosity) {
+    for (const RgbSum& b : solved.solution.radiosity) {
         lowest = std::min(lowest, b.x);
         highest = std::max(highest, b.x);
     }
     // Rows sum to 1, so every patch sees the same radiosity whatever the hemicubes' errors: only rounding is left.
     add(results, "furnace box: smallest B", 2.0, lowest, 1e-5);
     add(results, "furnace box: largest B", 2.0, highest, 1e-5);
-    add(results, "furnace box: row sums, largest error", 0.0, baked.rows.largestClosureError, 1e-6);
-    add(results, "furnace box: energy imbalance", 0.0, baked.solution.energy.imbalance(), 5e-3);
+    add(results, "furnace box: row sums, largest error", 0.0, solved.formFactors()->largestClosureError, 1e-6);
+    add(results, "furnace box: energy imbalance", 0.0, solved.solution.energy.imbalance(), 5e-3);
 }
 
 /// Means of B over the faces of a cube whose exact continuous solution is known.
@@ -50,22 +52,24 @@ void cube6(Results& results, Progress& progress) {
     constexpr std::array emitted{0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.25F};
     std::array<Material, 6> materials;
     for (std::size_t i = 0; i < 6; ++i) materials[i] = greyMaterial(fmt::format("f{}", i), reflectance[i], emitted[i]);
-    BakeOptions options;
+    FormFactorLight method;
+    method.formFactors.transport.resolution = 128;
+    method.solver.tolerance = 1e-7;
+    SolveOptions options;
     options.mesh.patches = 3456;
-    options.formFactors.transport.resolution = 128;
-    options.solver.tolerance = 1e-7;
-    const BakedScene baked = bakeScene(boxScene(glm::vec3(1.0F), materials), options, progress);
+    options.method = method;
+    const SolvedScene solved = solveScene(boxScene(glm::vec3(1.0F), materials), options, progress);
     std::array<double, 6> sum{};
     std::array<double, 6> area{};
-    for (std::size_t i = 0; i < baked.mesh.size(); ++i) {
-        const auto a = static_cast<double>(baked.mesh.area[i]);
-        sum[baked.mesh.material[i]] += a * baked.solution.radiosity[i].x;
-        area[baked.mesh.material[i]] += a;
+    for (std::size_t i = 0; i < solved.mesh.size(); ++i) {
+        const auto a = static_cast<double>(solved.mesh.area[i]);
+        sum[solved.mesh.material[i]] += a * solved.solution.radiosity[i].x;
+        area[solved.mesh.material[i]] += a;
     }
     for (std::size_t face = 0; face < 6; ++face)
         add(results, fmt::format("cube6: mean B of face {}", names[face]), faceMean[face], sum[face] / area[face],
             0.005 * faceMean[face]);
-    add(results, "cube6: row sums, largest error", 0.0, baked.rows.largestClosureError, 1e-6);
+    add(results, "cube6: row sums, largest error", 0.0, solved.formFactors()->largestClosureError, 1e-6);
 }
 
 /// RMS over several turns of the hemicubes.
@@ -73,12 +77,14 @@ double energyImbalance(std::size_t patches, int resolution, Progress& progress) 
     constexpr std::uint64_t kSeeds = 6;
     double squares = 0.0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-        BakeOptions options;
+        FormFactorLight method;
+        method.formFactors.transport.resolution = resolution;
+        method.formFactors.transport.seed = seed;
+        method.solver.tolerance = 1e-7;
+        SolveOptions options;
         options.mesh.patches = patches;
-        options.formFactors.transport.resolution = resolution;
-        options.formFactors.transport.seed = seed;
-        options.solver.tolerance = 1e-7;
-        const double imbalance = bakeScene(roomWithBoxScene(), options, progress).solution.energy.imbalance();
+        options.method = method;
+        const double imbalance = solveScene(roomWithBoxScene(), options, progress).solution.energy.imbalance();
         squares += imbalance * imbalance;
     }
     return std::sqrt(squares / static_cast<double>(kSeeds));

@@ -4,8 +4,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "picture/image.h"
 #include "rendering/default_camera.h"
-#include "rendering/image.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -17,18 +17,6 @@
 #include <numbers>
 
 namespace lambert {
-
-namespace {
-
-constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024, 512},
-                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096, 4096},
-                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768, 16384}};
-
-} // namespace
-
-const Quality& qualityOf(const std::string& name) {
-    return *std::find_if(kQualities.begin(), kQualities.end(), [&](const Quality& q) { return q.name == name; });
-}
 
 void addMeshArguments(CLI::App& command, TransportArguments& a, const std::string& patches) {
     command
@@ -147,29 +135,32 @@ MeshOptions meshOptions(const TransportArguments& a) {
     return options;
 }
 
-BakeOptions bakeOptions(const TransportArguments& a, const RunArguments& run) {
-    BakeOptions options;
+CheckpointOptions checkpointOptions(const TransportArguments& a) {
+    return {a.checkpoint, a.resume, a.checkpointInterval, LAMBERT_VERSION};
+}
+
+SolveOptions solveOptions(const TransportArguments& a, const RunArguments& run) {
+    SolveOptions options;
     options.mesh = meshOptions(a);
     checkLights(a.light);
     options.directLight = {
         .points = a.light.points, .skyRays = a.light.skyRays.value_or(qualityOf(a.quality).skyRays), .seed = run.seed};
+    options.checkpoint = checkpointOptions(a);
     if (usesVirtualLights(a)) {
-        options.instantRadiosity = instantRadiosityOptions(a, run);
-    } else {
-        refuseInstantRadiosity(a);
-        options.solver = solverOptions(a);
-        if (usesLines(options.solver.method)) {
-            options.lineSolver = lineSolverOptions(a, run);
-            options.formFactors.checkpoint = {a.checkpoint, a.resume, a.checkpointInterval};
-            options.formFactors.version = LAMBERT_VERSION;
-        } else {
-            options.formFactors = matrixSource(a, run);
-        }
+        options.method = instantRadiosityOptions(a, run);
+        return options;
     }
-    options.warmStart = a.warmStart;
-    options.reconstruction.keepHidden = a.patches == std::size_t{0}; // the caller's mesh
-    options.reconstruction.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0);
+    refuseInstantRadiosity(a);
+    if (a.solver && lineSolverByName(*a.solver))
+        options.method = lineSolverOptions(a, run);
+    else
+        options.method = FormFactorLight{matrixSource(a, run), solverOptions(a), a.warmStart};
     return options;
+}
+
+ReconstructionOptions reconstructionOptions(const TransportArguments& a) {
+    return {.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0),
+            .keepHidden = a.patches == std::size_t{0}}; // the caller's mesh
 }
 
 namespace {
@@ -256,9 +247,9 @@ void warnLine(const std::string& line) { writeLog("warning: " + line + "\n"); }
 
 void logReport(const RunArguments& run, const ReadReport& report) {
     if (!report.overrides.file.empty())
-        logLine(run, oneLine(fmt::format("{}: changes the scene (--no-overrides ignores it)",
-                                         report.overrides.file.string())));
-    for (const std::string& warning : report.warnings) warnLine(oneLine(warning));
+        logLine(run, printable(fmt::format("{}: changes the scene (--no-overrides ignores it)",
+                                           report.overrides.file.string())));
+    for (const std::string& warning : report.warnings) warnLine(printable(warning));
 }
 
 } // namespace lambert

@@ -4,8 +4,9 @@
 #include "baking/write_baked.h"
 #include "cli/light_arguments.h"
 #include "cli/scene_arguments.h"
-#include "rendering/camera_rays.h"
-#include "scene/scene_reader.h"
+#include "lighting/quality.h"
+#include "picture/camera_rays.h"
+#include "scene/reading.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -74,18 +75,6 @@ struct PictureArguments {
     int samples = 4;
 };
 
-/// What --quality stands for, where no other option says otherwise.
-struct Quality {
-    const char* name;
-    double refinement; //!< see MeshOptions
-    int resolution;    //!< the largest, see TransportOptions
-    double rays;       //!< the most
-    double tolerance;
-    std::uint32_t particles; //!< of instant radiosity
-    std::uint32_t skyRays;   //!< see DirectLightOptions
-};
-const Quality& qualityOf(const std::string& name);
-
 /// `patches`: what --help says of their number unless given.
 void addMeshArguments(CLI::App& command, TransportArguments& arguments,
                       const std::string& patches = "theirs and a quarter or 5000 more");
@@ -102,8 +91,9 @@ void addPictureArguments(CLI::App& command, PictureArguments& arguments); ///< a
 /// The options that belong together, checked. Throw UsageError.
 MeshOptions meshOptions(const TransportArguments& arguments);
 MatrixSource matrixSource(const TransportArguments& arguments, const RunArguments& run);
+/// For one of solverNames().
 SolverOptions solverOptions(const TransportArguments& arguments);
-/// For a solver that usesLines(): throws UsageError also for options of form factors.
+/// For one of lineSolverNames(): throws UsageError also for options of form factors.
 LineSolverOptions lineSolverOptions(const TransportArguments& arguments, const RunArguments& run);
 /// For --method instant-radiosity: throws UsageError also for options of form factors and solvers.
 InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& arguments, const RunArguments& run);
@@ -111,7 +101,9 @@ InstantRadiosityOptions instantRadiosityOptions(const TransportArguments& argume
 double geometricBound(const std::string& text);
 /// For other methods: throws UsageError if an option of instant radiosity is given.
 void refuseInstantRadiosity(const TransportArguments& arguments);
-BakeOptions bakeOptions(const TransportArguments& arguments, const RunArguments& run);
+CheckpointOptions checkpointOptions(const TransportArguments& arguments);
+SolveOptions solveOptions(const TransportArguments& arguments, const RunArguments& run);
+ReconstructionOptions reconstructionOptions(const TransportArguments& arguments);
 
 /// Appends the files, other than the scene's, that are read.
 void addTransportInputs(const TransportArguments& arguments, std::vector<std::filesystem::path>& inputs);

@@ -31,25 +31,25 @@ BakeJob jobOfOneScene(const BakeArguments& a) {
     return job;
 }
 
-ExitCode bakeOneScene(const BakeArguments& a) {
+ExitCode bakeOneScene(const BakeArguments& a, const BakePlan& plan) {
     const BakeJob job = jobOfOneScene(a);
-    if (a.dryRun || a.skipExisting) return runBatch(a, {job}, false);
+    if (a.dryRun || a.skipExisting) return runBatch(a, plan, {job}, false);
     std::vector<std::filesystem::path> targets = resultFiles(job);
-    const CheckpointOptions rows{a.transport.checkpoint};
-    for (const auto& target : {a.run.json, rows.path, solverCheckpointPath(rows)}) targets.push_back(target);
+    const auto& rows = a.transport.checkpoint;
+    for (const auto& target : {a.run.json, rows, solverCheckpointPath(rows)}) targets.push_back(target);
     checkTargets(targets, filesRead(a, job));
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
     SceneLog log(a.run.quiet, "", job.scene.string());
-    const BakeOutcome outcome = bakeJob(a, job, log, progress);
+    const BakeOutcome outcome = bakeJob(a, plan, job, log, progress);
     if (!a.run.json.empty()) writeJson(outcome.report, a.run.json);
     if (!a.run.quiet) fmt::print("{}", outcome.summary);
     return outcome.exitCode;
 }
 
 ExitCode bake(const BakeArguments& a) {
-    checkArguments(a);
+    const BakePlan plan = planOf(a);
     if (a.outputs.empty() && a.outputDir.empty() && a.picture.path.empty() && a.solution.empty() &&
         a.run.json.empty() && !a.dryRun)
         throw UsageError("nothing to write: give -o FILE, --output-dir DIR, --image FILE, --solution FILE or "
@@ -63,8 +63,8 @@ ExitCode bake(const BakeArguments& a) {
     if (several &&
         !(a.transport.formFactors.empty() && a.transport.warmStart.empty() && a.transport.checkpoint.empty()))
         throw UsageError("--form-factors, --warm-start and --checkpoint: are for one scene");
-    if (!a.outputDir.empty() || several) return runBatch(a, planBatch(a), several);
-    return bakeOneScene(a);
+    if (!a.outputDir.empty() || several) return runBatch(a, plan, planBatch(a), several);
+    return bakeOneScene(a, plan);
 }
 
 } // namespace

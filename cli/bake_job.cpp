@@ -7,11 +7,12 @@
 #include "cli/terminal_text.h"
 
 #include "baking/exposure.h"
-#include "baking/prediction.h"
-#include "baking/solution_file.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
+#include "prediction/measured_costs.h"
+#include "prediction/prediction.h"
 #include "rendering/render.h"
+#include "solver/solution_file.h"
 
 #include <fmt/format.h>
 
@@ -25,10 +26,6 @@ namespace lambert {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Measured on two cores.
-constexpr double kWriteSecondsPerPatch = 5e-6;
-constexpr double kPictureRay = 2.0; ///< a picture's ray and the light where it ends, in rays of a hemicube
 
 Quantity quantityOf(const BakeArguments& a) {
     return a.quantity == "irradiance" ? Quantity::Irradiance : Quantity::Radiosity;
@@ -45,14 +42,13 @@ std::optional<float> typedExposure(const std::string& text) {
     return value;
 }
 
-Image renderPicture(const BakeArguments& a, const BakedScene& baked, const Picture& shot, float exposure,
-                    Progress& progress) {
+Image renderPicture(const BakedScene& baked, const Picture& shot, const BakeOutputOptions& output, Progress& progress) {
     RenderOptions options;
     options.width = shot.width;
     options.height = shot.height;
     options.samplesPerAxis = shot.samples;
-    options.quantity = quantityOf(a);
-    if (imageFormatOf(shot.path) == ImageFormat::Png) options.toneMapExposure = exposure;
+    options.quantity = output.quantity;
+    if (imageFormatOf(shot.path) == ImageFormat::Png) options.toneMapExposure = output.exposure;
     return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);
 }
 
@@ -65,44 +61,46 @@ bool isBlack(const BakedMesh& mesh, Quantity quantity) {
     return std::all_of(shown.begin(), shown.end(), [](const Rgb& value) { return value == Rgb(0.0F); });
 }
 
-std::string solverText(const BakedScene& baked) {
-    if (baked.instantRadiosity)
-        return fmt::format("{} virtual point lights, {:.3g} rays", baked.instantRadiosity->lights,
-                           static_cast<double>(baked.rayCount));
-    if (baked.stochastic)
-        return fmt::format("{:.3g} rays in {} runs, standard error {:.2g} %",
-                           static_cast<double>(baked.stochastic->rays), baked.stochastic->subRuns,
-                           100.0 * baked.stochastic->relativeError);
-    return fmt::format("{} iterations, residual {:.2g}", baked.solution.iterations, baked.solution.residual);
+std::string solverText(const SolvedScene& solved) {
+    if (const InstantRadiosity* lights = solved.instantRadiosity())
+        return fmt::format("{} virtual point lights, {:.3g} rays", lights->lights,
+                           static_cast<double>(solved.rayCount));
+    if (const StochasticSolution* lines = solved.stochastic())
+        return fmt::format("{:.3g} rays in {} runs, standard error {:.2g} %", static_cast<double>(lines->rays),
+                           lines->subRuns, 100.0 * lines->relativeError);
+    return fmt::format("{} iterations, residual {:.2g}", solved.solution.iterations, solved.solution.residual);
 }
 
 /// Which form factors, and how many rays they took.
-std::string transportText(const BakeArguments& a, const BakedScene& baked) {
-    if (baked.instantRadiosity) return std::string(kInstantRadiosity);
-    if (!baked.stochastic && !baked.plan && a.transport.formFactors.empty()) return "no light to follow";
-    const std::string solver(nameOf(solverOptions(a.transport).method));
-    if (baked.stochastic) return a.transport.method.value_or("local-lines") + "; " + solver;
+std::string transportText(const LightMethod& method, const SolvedScene& solved) {
+    if (std::holds_alternative<std::monostate>(solved.account)) return "no light to follow";
+    const FormFactorsUsed* const used = solved.formFactors();
+    if (solved.instantRadiosity() != nullptr) return methodName(method, solved);
+    if (used == nullptr) return methodName(method, solved) + "; " + solverName(method);
     return fmt::format("{}: {:.3g} rays; {}",
-                       baked.plan ? baked.plan->effort() : "form factors from " + a.transport.formFactors.string(),
-                       static_cast<double>(baked.rayCount), solver);
+                       used->plan ? used->plan->effort()
+                                  : "form factors from " + std::get<FormFactorLight>(method).formFactors.file.string(),
+                       static_cast<double>(solved.rayCount), solverName(method));
 }
 
 std::string summaryOf(const BakedScene& baked, float exposure, double seconds) {
     std::string text = fmt::format("{:<20} {:>10} {:>11} {:>11} {:>11}   mean irradiance (r g b)\n", "material",
                                    "area m²", "", "", "");
     for (const MaterialLight& light : materialLight(baked))
-        text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", oneLine(light.name), light.area,
+        text += fmt::format("{:<20} {:>10.4g} {:>11.5g} {:>11.5g} {:>11.5g}\n", printable(light.name), light.area,
                             light.meanIrradiance.x, light.meanIrradiance.y, light.meanIrradiance.z);
     return text + fmt::format("{} patches, {}, {}, exposure {:.2f} EV, {:.1f} s\n", baked.mesh.size(),
                               solverText(baked), imbalanceText(baked), exposure, seconds);
 }
 
-SolutionRecord solutionOf(const BakeArguments& a, const BakeJob& job, const BakedScene& baked) {
-    return {*baked.scene,
-            baked.mesh,
-            baked.solution,
-            baked.stochastic ? std::span<const Rgb>(baked.stochastic->standardError) : std::span<const Rgb>(),
-            {job.scene.string(), methodName(baked, a.transport), solverName(baked, a.transport)},
+SolutionRecord solutionOf(const LightMethod& method, const BakeJob& job, const SolvedScene& solved) {
+    const StochasticSolution* const lines = solved.stochastic();
+    return {*solved.scene,
+            solved.mesh,
+            solved.optics,
+            solved.solution,
+            lines != nullptr ? std::span<const Rgb>(lines->standardError) : std::span<const Rgb>(),
+            {job.scene.string(), methodName(method, solved), solverName(method)},
             LAMBERT_VERSION};
 }
 
@@ -165,27 +163,29 @@ bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
     });
 }
 
-void checkArguments(const BakeArguments& a) {
-    typedExposure(a.exposure);
+BakePlan planOf(const BakeArguments& a) {
+    BakePlan plan;
+    plan.exposure = typedExposure(a.exposure);
     checkPicture(a.picture);
     if (!a.solution.empty()) requireSolutionName(a.solution, "--solution");
-    bakeOptions(a.transport, a.run);
+    plan.options = {solveOptions(a.transport, a.run), reconstructionOptions(a.transport), a.perLight};
+    plan.output = {quantityOf(a), plan.exposure.value_or(0.0F), LAMBERT_VERSION};
     if (a.perLight && usesVirtualLights(a.transport))
         throw UsageError(fmt::format("--per-light: is not possible with --method {}", kInstantRadiosity));
     if (a.perLight && a.skipExisting)
         throw UsageError("--per-light: which files it writes is known only once a scene is read; not with "
                          "--skip-existing");
+    return plan;
 }
 
-BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
+BakeOutcome bakeJob(const BakeArguments& a, const BakePlan& plan, const BakeJob& job, SceneLog& log,
+                    Progress& progress) {
     const Stopwatch total;
-    BakeOptions options = bakeOptions(a.transport, a.run);
-    options.perLight = a.perLight;
-    const std::optional<float> typed = typedExposure(a.exposure);
+    const SolveOptions& options = plan.options.solve;
     const ReadResult read = readJob(a, job, log, progress);
     const double readSeconds = total.seconds();
 
-    BakedScene baked = bakeScene(read.scene, options, progress);
+    BakedScene baked = bakeScene(read.scene, plan.options, progress);
     const std::string overlaps = overlapText(*baked.scene, baked.prepareReport.cover);
     const bool cut = baked.prepareReport.cover.takenAway;
     if (!overlaps.empty() && !cut) baked.warnings.push_back(overlaps);
@@ -193,22 +193,23 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
     if (!overlaps.empty() && cut) log.line(overlaps);
     const std::size_t near = baked.meshReport.nearContactPatches;
     log.line(fmt::format("{} patches{}, {}: {}", baked.mesh.size(),
-                         near > 0 ? fmt::format(" ({} for near contacts)", near) : "", transportText(a, baked),
-                         solverText(baked)),
+                         near > 0 ? fmt::format(" ({} for near contacts)", near) : "",
+                         transportText(options.method, baked), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
-    if (baked.repair) log.line(repairText(*baked.repair));
+    if (baked.formFactors() != nullptr && baked.formFactors()->repair)
+        log.line(repairText(*baked.formFactors()->repair));
 
-    const float exposure = typed ? *typed : automaticExposure(baked.baked, quantityOf(a));
+    BakeOutputOptions output = plan.output;
+    if (!plan.exposure) output.exposure = automaticExposure(baked.baked, output.quantity);
     const Stopwatch writing;
-    const BakeOutputOptions output{quantityOf(a), exposure, LAMBERT_VERSION};
     for (const BakeJob::Output& target : job.outputs) writeBaked(baked.baked, target.path, target.format, output);
-    if (!job.solution.empty()) writeSolution(solutionOf(a, job, baked), job.solution);
+    if (!job.solution.empty()) writeSolution(solutionOf(options.method, job, baked), job.solution);
     const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, filesRead(a, job));
     std::optional<Picture> shot;
     std::string pictureWarning;
     if (!job.image.empty()) {
         shot = picture(pictureArguments(a, job), *baked.scene, *baked.rays);
-        const Image image = renderPicture(a, baked, *shot, exposure, progress);
+        const Image image = renderPicture(baked, *shot, output, progress);
         if (isBlack(image) && !isBlack(baked.baked, output.quantity)) {
             pictureWarning =
                 fmt::format("{}: the picture is black: its camera sees nothing that is lit, only backs, shadow "
@@ -216,51 +217,53 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, P
                             shot->path.string());
             log.warning(pictureWarning);
         }
-        writeImage(image, shot->path, exposure);
+        writeImage(image, shot->path, output.exposure);
     }
 
     BakeOutcome outcome;
     const double writeSeconds = writing.seconds();
     outcome.seconds = total.seconds();
-    outcome.report = bakeReport({baked, read.report, sceneOf(a, job), a.transport, a.run, shot,
-                                 static_cast<double>(exposure), readSeconds, writeSeconds, outcome.seconds});
+    outcome.report = bakeReport({baked, options, read.report, sceneOf(a, job), a.transport, a.run, readSeconds,
+                                 writeSeconds, outcome.seconds, &baked, shot, static_cast<double>(output.exposure)});
     if (!pictureWarning.empty()) outcome.report["warnings"].push_back(pictureWarning);
     if (a.perLight) outcome.report["lights"] = lightsJson(lights);
-    outcome.summary = summaryOf(baked, exposure, outcome.seconds);
+    outcome.summary = summaryOf(baked, output.exposure, outcome.seconds);
     outcome.patches = baked.mesh.size();
     outcome.rays = baked.rayCount;
     outcome.peakMemory = peakMemoryBytes();
     outcome.imbalance = worseImbalance(baked);
     removeCheckpoints(baked);
-    log.line(fmt::format("{}, exposure {:.2f} EV", imbalanceText(baked), exposure));
-    const BakeVerdict verdict = judge(options, baked);
+    log.line(fmt::format("{}, exposure {:.2f} EV", imbalanceText(baked), output.exposure));
+    const BakeVerdict verdict = judge(options.method, baked);
     for (const std::string& warning : verdict.warnings) log.warning(warning);
     outcome.report["warnings"] = log.warnings();
     outcome.exitCode = verdict.exitCode;
     return outcome;
 }
 
-BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
+BakeOutcome predictJob(const BakeArguments& a, const BakePlan& plan, const BakeJob& job, SceneLog& log,
+                       Progress& progress) {
     const Stopwatch reading;
     const ReadResult read = readJob(a, job, log, progress);
     const double readSeconds = reading.seconds();
-    const BakeOptions options = bakeOptions(a.transport, a.run);
-    const BakePrediction predicted = predictBake(read.scene, options, progress);
+    const LightMethod& method = plan.options.solve.method;
+    const BakePrediction predicted = predictBake(read.scene, plan.options.solve, progress);
 
     double writeSeconds =
-        kWriteSecondsPerPatch * static_cast<double>(predicted.patches) * static_cast<double>(job.outputs.size());
+        kWriteSeconds * static_cast<double>(predicted.patches) * static_cast<double>(job.outputs.size());
     writeSeconds += kPictureRay * predicted.secondsPerRay * pictureRays(pictureArguments(a, job));
-    const BakeSeconds& s = predicted.seconds;
+    const SolveSeconds& s = predicted.seconds;
     BakeOutcome outcome;
     outcome.patches = predicted.patches;
     outcome.rays = predicted.rays;
-    outcome.seconds = readSeconds + s.mesh + s.formFactors + s.directLight + s.solve + s.bake + writeSeconds;
+    outcome.seconds =
+        readSeconds + s.mesh + s.formFactors + s.directLight + s.solve + predicted.bakeSeconds + writeSeconds;
     outcome.peakMemory = predicted.peakMemory;
     outcome.report = {{"scene", job.scene.string()},
                       {"patches", predicted.patches},
                       {"rays", predicted.rays},
                       {"peak_memory_bytes", predicted.peakMemory},
-                      {"options", methodOptionsJson(options, predicted.plan)},
+                      {"options", methodOptionsJson(method, predicted.plan)},
                       {"form_factors", {{"bytes", predicted.matrixBytes}}},
                       {"seconds",
                        {{"read", readSeconds},
@@ -268,7 +271,7 @@ BakeOutcome predictJob(const BakeArguments& a, const BakeJob& job, SceneLog& log
                         {"form_factors", s.formFactors},
                         {"direct_light", s.directLight},
                         {"solve", s.solve},
-                        {"bake", s.bake},
+                        {"bake", predicted.bakeSeconds},
                         {"write", writeSeconds},
                         {"total", outcome.seconds}}},
                       {"warnings", read.report.warnings}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "baking/bake_scene.h"
 #include "baking/write_baked.h"
 #include "cli/bake_arguments.h"
 #include "cli/scene_log.h"
@@ -53,13 +54,22 @@ struct BakeOutcome {
     std::optional<double> imbalance; //!< of the energy; that before repair if it is the worse one
 };
 
+/// What the arguments of a bake say, once and for all its jobs.
+struct BakePlan {
+    BakeOptions options;
+    BakeOutputOptions output;      //!< but for an automatic exposure
+    std::optional<float> exposure; //!< EV; none: automatic
+};
+
 /// Throws UsageError for what can be known to be wrong before a scene is read.
-void checkArguments(const BakeArguments& arguments);
+BakePlan planOf(const BakeArguments& arguments);
 
 /// Reads, bakes, and writes the job's result files. Throws what these throw; then nothing, or not all, is written.
-BakeOutcome bakeJob(const BakeArguments& arguments, const BakeJob& job, SceneLog& log, Progress& progress);
+BakeOutcome bakeJob(const BakeArguments& arguments, const BakePlan& plan, const BakeJob& job, SceneLog& log,
+                    Progress& progress);
 
 /// Reads and meshes the scene and predicts the rest; writes nothing.
-BakeOutcome predictJob(const BakeArguments& arguments, const BakeJob& job, SceneLog& log, Progress& progress);
+BakeOutcome predictJob(const BakeArguments& arguments, const BakePlan& plan, const BakeJob& job, SceneLog& log,
+                       Progress& progress);
 
 } // namespace lambert

@@ -29,17 +29,18 @@ Json cameraJson(const Picture& picture, const Scene& scene) {
 }
 
 Json optionsJson(const BakeReportInput& in) {
-    const BakedScene& baked = in.baked;
+    const SolvedScene& solved = in.solved;
     Json options = sceneOptionsJson(in.scene, in.read.overrides);
-    const double length = baked.meshReport.patchLength;
+    const double length = solved.meshReport.patchLength;
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
-    const BakeOptions inForce = bakeOptions(in.transport, in.run);
-    options.update(methodOptionsJson(inForce, baked.plan));
-    options.update(lightOptionsJson(in.transport.light, inForce.directLight));
+    const FormFactorsUsed* const used = solved.formFactors();
+    options.update(methodOptionsJson(in.options.method, used != nullptr ? used->plan : std::nullopt));
+    options.update(lightOptionsJson(in.transport.light, in.options.directLight));
     options["quality"] = in.transport.quality;
-    if (!baked.stochastic && !baked.instantRadiosity) options.update(solverOptionsJson(solverOptions(in.transport)));
+    if (const auto* factors = std::get_if<FormFactorLight>(&in.options.method))
+        options.update(solverOptionsJson(factors->solver));
     options["warm_start"] = in.transport.warmStart.empty() ? Json(nullptr) : Json(in.transport.warmStart.string());
     options["threads"] = threadCount();
     return options;
@@ -50,27 +51,28 @@ Json inputJson(const BakeReportInput& in) {
             {"non_finite", in.read.nonFinitePolygons},
             {"degenerate", in.read.degeneratePolygons},
             {"split", in.read.splitPolygons},
-            {"collapsed", in.baked.prepareReport.collapsedPolygons},
-            {"duplicates", in.baked.prepareReport.duplicatePolygons},
-            {"merged_sheets", in.baked.prepareReport.mergedSheets},
-            {"covered", in.baked.prepareReport.cover.coveredPolygons},
-            {"cut_by_coplanar", in.baked.prepareReport.cover.cutPolygons},
-            {"coplanar_overlaps", overlapsJson(*in.baked.scene, in.baked.prepareReport.cover)},
-            {"edge_crossings", in.baked.prepareReport.edgeCrossings},
-            {"joined_pairs", in.baked.prepareReport.joinedPairs}};
+            {"collapsed", in.solved.prepareReport.collapsedPolygons},
+            {"duplicates", in.solved.prepareReport.duplicatePolygons},
+            {"merged_sheets", in.solved.prepareReport.mergedSheets},
+            {"covered", in.solved.prepareReport.cover.coveredPolygons},
+            {"cut_by_coplanar", in.solved.prepareReport.cover.cutPolygons},
+            {"coplanar_overlaps", overlapsJson(*in.solved.scene, in.solved.prepareReport.cover)},
+            {"edge_crossings", in.solved.prepareReport.edgeCrossings},
+            {"joined_pairs", in.solved.prepareReport.joinedPairs}};
 }
 
-Json meshJson(const BakedScene& baked) {
-    return {{"undivided_polygons", baked.meshReport.undividedPolygons},
-            {"undivided_area", baked.meshReport.undividedArea},
-            {"contact_polygons", baked.meshReport.contactPolygons},
-            {"ignored_contact_polygons", baked.meshReport.ignoredContactPolygons},
-            {"near_contact_polygons", baked.meshReport.nearContactPolygons},
-            {"near_contact_patches", baked.meshReport.nearContactPatches},
-            {"near_contact_budget", baked.meshReport.nearContactBudget},
-            {"degenerate_patches", baked.meshReport.degeneratePatches},
-            {"hidden_patches", std::count(baked.mesh.hidden.begin(), baked.mesh.hidden.end(), true)},
-            {"separated_faces", baked.separatedFaces}};
+Json meshJson(const SolvedScene& solved, const BakedScene* baked) {
+    Json json = {{"undivided_polygons", solved.meshReport.undividedPolygons},
+                 {"undivided_area", solved.meshReport.undividedArea},
+                 {"contact_polygons", solved.meshReport.contactPolygons},
+                 {"ignored_contact_polygons", solved.meshReport.ignoredContactPolygons},
+                 {"near_contact_polygons", solved.meshReport.nearContactPolygons},
+                 {"near_contact_patches", solved.meshReport.nearContactPatches},
+                 {"near_contact_budget", solved.meshReport.nearContactBudget},
+                 {"degenerate_patches", solved.meshReport.degeneratePatches},
+                 {"hidden_patches", std::count(solved.mesh.hidden.begin(), solved.mesh.hidden.end(), true)}};
+    if (baked != nullptr) json["separated_faces"] = baked->separatedFaces;
+    return json;
 }
 
 Json historyJson(const RadiositySolution& solution) {
@@ -114,10 +116,10 @@ Json backFacesJson(const BlackBacks& backs) {
 
 } // namespace
 
-Json methodOptionsJson(const BakeOptions& options, const std::optional<TransportPlan>& plan) {
-    if (options.instantRadiosity) return instantRadiosityOptionsJson(*options.instantRadiosity);
-    if (usesLines(options.solver.method)) return lineSolverOptionsJson(options.lineSolver);
-    return matrixOptionsJson(options.formFactors, plan);
+Json methodOptionsJson(const LightMethod& method, const std::optional<TransportPlan>& plan) {
+    if (const auto* lights = std::get_if<InstantRadiosityOptions>(&method)) return instantRadiosityOptionsJson(*lights);
+    if (const auto* lines = std::get_if<LineSolverOptions>(&method)) return lineSolverOptionsJson(*lines);
+    return matrixOptionsJson(std::get<FormFactorLight>(method).formFactors, plan);
 }
 
 Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides) {
@@ -147,38 +149,42 @@ Json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overr
 
 Json jsonVector(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 
-std::string methodName(const BakedScene& baked, const TransportArguments& transport) {
-    if (baked.instantRadiosity) return std::string(kInstantRadiosity);
-    if (baked.stochastic) return transport.method.value_or("local-lines");
-    if (baked.plan) return std::string(nameOf(baked.plan->options.method));
-    return transport.formFactors.empty() ? "none" : "file"; // none: there was no light to follow
+std::string methodName(const LightMethod& method, const SolvedScene& solved) {
+    if (std::holds_alternative<std::monostate>(solved.account)) return "none";
+    if (solved.instantRadiosity() != nullptr) return std::string(kInstantRadiosity);
+    if (const auto* lines = std::get_if<LineSolverOptions>(&method))
+        return lines->lines == RelaxationLines::Global ? "global-lines" : "local-lines";
+    const auto& plan = solved.formFactors()->plan;
+    return plan ? std::string(nameOf(plan->options.method)) : "file";
 }
 
-std::string solverName(const BakedScene& baked, const TransportArguments& transport) {
-    return baked.instantRadiosity ? "none" : std::string(nameOf(solverOptions(transport).method));
+std::string solverName(const LightMethod& method) {
+    if (const auto* factors = std::get_if<FormFactorLight>(&method)) return std::string(nameOf(factors->solver.method));
+    const auto* lines = std::get_if<LineSolverOptions>(&method);
+    return lines != nullptr ? std::string(nameOf(lines->solver)) : "none";
 }
 
-std::vector<MaterialLight> materialLight(const BakedScene& baked) {
-    const PatchMesh& mesh = baked.mesh;
-    std::vector<MaterialLight> lights(baked.scene->materials.size());
+std::vector<MaterialLight> materialLight(const SolvedScene& solved) {
+    const PatchMesh& mesh = solved.mesh;
+    std::vector<MaterialLight> lights(solved.scene->materials.size());
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         MaterialLight& light = lights[mesh.material[i]];
         const auto area = static_cast<double>(mesh.area[i]);
         // A second side of the same material is no second face.
-        if (!mesh.isBack(i) || baked.scene->polygons[mesh.polygon[i]].material != mesh.material[i]) light.area += area;
-        light.meanIrradiance += area * baked.solution.irradiance[i];
-        light.meanRadiosity += area * baked.solution.radiosity[i];
+        if (!mesh.isBack(i) || solved.scene->polygons[mesh.polygon[i]].material != mesh.material[i]) light.area += area;
+        light.meanIrradiance += area * solved.solution.irradiance[i];
+        light.meanRadiosity += area * solved.solution.radiosity[i];
     }
     // What others cover in its plane has no patches and receives nothing; but the back of what is two-sided may still show.
-    if (const CoverReport& cover = baked.prepareReport.cover; cover.takenAway)
+    if (const CoverReport& cover = solved.prepareReport.cover; cover.takenAway)
         for (const CoplanarOverlap& overlap : cover.overlaps)
-            if (!baked.scene->materials[overlap.lowerMaterial].twoSided ||
+            if (!solved.scene->materials[overlap.lowerMaterial].twoSided ||
                 overlap.lowerMaterial == overlap.upperMaterial)
                 lights[overlap.lowerMaterial].area += overlap.area;
     std::vector<MaterialLight> used;
     for (std::size_t m = 0; m < lights.size(); ++m) {
         if (!(lights[m].area > 0.0)) continue;
-        lights[m].name = baked.scene->materials[m].name;
+        lights[m].name = solved.scene->materials[m].name;
         lights[m].meanIrradiance /= lights[m].area;
         lights[m].meanRadiosity /= lights[m].area;
         used.push_back(lights[m]);
@@ -193,56 +199,59 @@ Json energyJson(const EnergyBalance& energy) {
 }
 
 Json bakeReport(const BakeReportInput& in) {
-    const BakedScene& baked = in.baked;
+    const SolvedScene& solved = in.solved;
+    const FormFactorsUsed unused{};
+    const FormFactorsUsed& rows = solved.formFactors() != nullptr ? *solved.formFactors() : unused;
     Json report;
     report["scene"] = in.scene.path.string();
-    report["patches"] = baked.mesh.size();
-    report["vertices"] = baked.baked.positions.size();
-    report["method"] = methodName(baked, in.transport);
-    report["solver"] = solverName(baked, in.transport);
-    report["iterations"] = baked.instantRadiosity ? Json(nullptr) : Json(baked.solution.iterations);
-    report["residual"] = baked.instantRadiosity ? Json(nullptr) : Json(baked.solution.residual);
-    report["history"] = historyJson(baked.solution);
-    if (baked.stochastic) report["stochastic"] = stochasticJson(*baked.stochastic);
-    if (baked.instantRadiosity) report["instant_radiosity"] = instantRadiosityJson(*baked.instantRadiosity);
-    if (!baked.solution.bounces.empty()) report["bounces"] = bouncesJson(baked.mesh, baked.solution);
-    report["rays"] = baked.rayCount;
+    report["patches"] = solved.mesh.size();
+    if (in.baked != nullptr) report["vertices"] = in.baked->baked.positions.size();
+    report["method"] = methodName(in.options.method, solved);
+    report["solver"] = solverName(in.options.method);
+    report["iterations"] = solved.instantRadiosity() != nullptr ? Json(nullptr) : Json(solved.solution.iterations);
+    report["residual"] = solved.instantRadiosity() != nullptr ? Json(nullptr) : Json(solved.solution.residual);
+    report["history"] = historyJson(solved.solution);
+    if (solved.stochastic() != nullptr) report["stochastic"] = stochasticJson(*solved.stochastic());
+    if (solved.instantRadiosity() != nullptr)
+        report["instant_radiosity"] = instantRadiosityJson(*solved.instantRadiosity());
+    if (!solved.solution.bounces.empty()) report["bounces"] = bouncesJson(solved.mesh, solved.solution);
+    report["rays"] = solved.rayCount;
     report["peak_memory_bytes"] = peakMemoryBytes();
     report["options"] = optionsJson(in);
     report["seed"] = in.run.seed;
     report["version"] = LAMBERT_VERSION;
-    report["camera"] = in.picture ? cameraJson(*in.picture, *baked.scene) : Json(nullptr);
+    report["camera"] = in.picture ? cameraJson(*in.picture, *solved.scene) : Json(nullptr);
     report["exposure_ev"] = in.exposure ? Json(*in.exposure) : Json(nullptr);
     report["input"] = inputJson(in);
-    report["mesh"] = meshJson(baked);
-    report["form_factors"] = {{"entries", baked.rows.entries},
-                              {"bytes", baked.rows.bytes},
-                              {"largest_closure_error", baked.rows.largestClosureError},
-                              {"mean_row_error", baked.rows.meanError},
-                              {"largest_row_error", baked.rows.largestError},
-                              {"back_face_fraction", baked.blackBacks.rays},
-                              {"repair", repairJson(baked.repair)}};
+    report["mesh"] = meshJson(solved, in.baked);
+    report["form_factors"] = {{"entries", rows.entries},
+                              {"bytes", rows.bytes},
+                              {"largest_closure_error", rows.largestClosureError},
+                              {"mean_row_error", rows.meanError},
+                              {"largest_row_error", rows.largestError},
+                              {"back_face_fraction", solved.blackBacks.rays},
+                              {"repair", repairJson(rows.repair)}};
     report["seconds"] = {{"read", in.readSeconds},
-                         {"mesh", baked.seconds.mesh},
-                         {"form_factors", baked.seconds.formFactors},
-                         {"direct_light", baked.seconds.directLight},
-                         {"solve", baked.seconds.solve},
-                         {"bake", baked.seconds.bake},
+                         {"mesh", solved.seconds.mesh},
+                         {"form_factors", solved.seconds.formFactors},
+                         {"direct_light", solved.seconds.directLight},
+                         {"solve", solved.seconds.solve},
+                         {"bake", in.baked != nullptr ? in.baked->bakeSeconds : 0.0},
                          {"write", in.writeSeconds},
                          {"total", in.totalSeconds}};
-    report["energy"] = energyJson(baked.solution.energy);
+    report["energy"] = energyJson(solved.solution.energy);
     report["energy"]["imbalance_before_repair"] =
-        baked.energyCheck.beforeRepair ? Json(*baked.energyCheck.beforeRepair) : Json(nullptr);
-    report["back_faces"] = backFacesJson(baked.blackBacks);
+        solved.energyCheck.beforeRepair ? Json(*solved.energyCheck.beforeRepair) : Json(nullptr);
+    report["back_faces"] = backFacesJson(solved.blackBacks);
     Json materials = Json::array();
-    for (const MaterialLight& light : materialLight(baked))
+    for (const MaterialLight& light : materialLight(solved))
         materials.push_back({{"name", light.name},
                              {"area", light.area},
                              {"mean_irradiance", jsonVector(light.meanIrradiance)},
                              {"mean_radiosity", jsonVector(light.meanRadiosity)}});
     report["materials"] = materials;
     Json warnings = Json::array();
-    for (const auto* list : {&in.read.warnings, &baked.warnings})
+    for (const auto* list : {&in.read.warnings, &solved.warnings})
         for (const std::string& warning : *list) warnings.push_back(warning);
     report["warnings"] = warnings;
     return report;

@@ -18,33 +18,35 @@ struct MaterialLight {
     RgbSum meanIrradiance{0.0}, meanRadiosity{0.0};
 };
 
-/// The name of the method that form factors came by; "file" if they were read, "none" if there was no light to follow.
-std::string methodName(const BakedScene& baked, const TransportArguments& transport);
+/// The name of the method that the light was found by; "file" if form factors were read, "none" if there was no light to follow.
+std::string methodName(const LightMethod& method, const SolvedScene& solved);
 /// That of the solver; "none" for instant radiosity.
-std::string solverName(const BakedScene& baked, const TransportArguments& transport);
+std::string solverName(const LightMethod& method);
 
 /// One entry per material that is used, in the scene's order.
-std::vector<MaterialLight> materialLight(const BakedScene& baked);
+std::vector<MaterialLight> materialLight(const SolvedScene& solved);
 
-/// What the JSON report of a bake needs beside the result.
+/// What the JSON report of a solved scene is made of.
 struct BakeReportInput {
-    const BakedScene& baked;
+    const SolvedScene& solved;
+    const SolveOptions& options;
     const ReadReport& read;
     const SceneArguments& scene;
     const TransportArguments& transport;
     const RunArguments& run;
-    std::optional<Picture> picture;
-    std::optional<double> exposure; //!< EV; none where nothing is shown
     double readSeconds = 0.0, writeSeconds = 0.0, totalSeconds = 0.0;
+    const BakedScene* baked = nullptr; //!< null: nothing was baked
+    std::optional<Picture> picture{};
+    std::optional<double> exposure{}; //!< EV; none where nothing is shown
 };
 
 /// How the scene was read and what was changed of it, by options or by the overrides file.
 nlohmann::ordered_json sceneOptionsJson(const SceneArguments& scene, const AppliedOverrides& overrides);
 
 /// Of what finds the light: form factors, lines or virtual point lights.
-nlohmann::ordered_json methodOptionsJson(const BakeOptions& options, const std::optional<TransportPlan>& plan);
+nlohmann::ordered_json methodOptionsJson(const LightMethod& method, const std::optional<TransportPlan>& plan);
 
-/// The report of one bake; keys are documented in docs/output.md.
+/// The report of one bake or solve; keys are documented in docs/output.md.
 nlohmann::ordered_json bakeReport(const BakeReportInput& input);
 
 nlohmann::ordered_json energyJson(const EnergyBalance& energy);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "baking/bake_scene.h"
 #include "core/error.h"
+#include "lighting/solve_scene.h"
 
 #include <string>
 #include <vector>
@@ -15,12 +15,12 @@ struct BakeVerdict {
 };
 
 /// Judges the solver's target, and the energy's imbalance, which the bake's own warnings tell of.
-BakeVerdict judge(const BakeOptions& options, const BakedScene& baked);
+BakeVerdict judge(const LightMethod& method, const SolvedScene& solved);
 
 /// "energy imbalance 0.0012", with that before repair where there was one.
-std::string imbalanceText(const BakedScene& baked);
+std::string imbalanceText(const SolvedScene& solved);
 
 /// The one that a table has room for: the worse of both.
-double worseImbalance(const BakedScene& baked);
+double worseImbalance(const SolvedScene& solved);
 
 } // namespace lambert

@@ -50,7 +50,8 @@ void writeLogFile(const BakeJob& job, const BatchRow& row, SceneLog& log) {
 }
 
 /// One job to its end, whatever that is.
-BatchRow runJob(const BakeArguments& a, const BakeJob& job, const std::string& place, TerminalProgress& progress) {
+BatchRow runJob(const BakeArguments& a, const BakePlan& plan, const BakeJob& job, const std::string& place,
+                TerminalProgress& progress) {
     SceneLog log(a.run.quiet, place, job.scene.string());
     BatchRow row;
     resetPeakMemory(); // else the report holds the largest peak so far
@@ -60,12 +61,12 @@ BatchRow runJob(const BakeArguments& a, const BakeJob& job, const std::string& p
             row.exitCode = ExitCode::Ok;
             log.line("skipped: the files are there and newer than the scene");
         } else if (a.dryRun) {
-            row.outcome = predictJob(a, job, log, progress);
+            row.outcome = predictJob(a, plan, job, log, progress);
             row.exitCode = row.outcome.exitCode;
             row.status = BatchStatus::Predicted;
         } else {
             prepareTargets(a, job);
-            row.outcome = bakeJob(a, job, log, progress);
+            row.outcome = bakeJob(a, plan, job, log, progress);
             row.exitCode = row.outcome.exitCode;
             row.status = BatchStatus::Baked;
         }
@@ -106,7 +107,7 @@ Json batchReport(const std::vector<BakeJob>& jobs, const std::vector<BatchRow>& 
 
 } // namespace
 
-ExitCode runBatch(const BakeArguments& a, const std::vector<BakeJob>& jobs, bool several) {
+ExitCode runBatch(const BakeArguments& a, const BakePlan& plan, const std::vector<BakeJob>& jobs, bool several) {
     const Stopwatch total;
     if (!a.dryRun && !a.outputDir.empty()) createFolder(a.outputDir);
     if (!a.run.json.empty()) requireWritable(a.run.json);
@@ -117,8 +118,8 @@ ExitCode runBatch(const BakeArguments& a, const std::vector<BakeJob>& jobs, bool
     std::vector<BatchRow> rows(jobs.size());
     for (std::size_t i = 0; i < jobs.size() && !progress.cancelled(); ++i) {
         const std::string place = jobs.size() > 1 ? fmt::format("[{}/{}] ", i + 1, jobs.size()) : std::string();
-        progress.setTitle(place + oneLine(jobs[i].scene.filename().string()));
-        rows[i] = runJob(a, jobs[i], place, progress);
+        progress.setTitle(place + printable(jobs[i].scene.filename().string()));
+        rows[i] = runJob(a, plan, jobs[i], place, progress);
     }
 
     if (!a.run.json.empty()) writeJson(batchReport(jobs, rows, several), a.run.json);

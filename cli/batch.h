@@ -13,6 +13,6 @@ namespace lambert {
 ///
 /// `several`: the report is {"runs": [one object per scene]}, else the one object. Returns the highest exit code of the
 /// jobs, or Interrupted. Throws SystemError if the output folder or the report cannot be written.
-ExitCode runBatch(const BakeArguments& arguments, const std::vector<BakeJob>& jobs, bool several);
+ExitCode runBatch(const BakeArguments& arguments, const BakePlan& plan, const std::vector<BakeJob>& jobs, bool several);
 
 } // namespace lambert

@@ -3,7 +3,7 @@
 #include "cli/targets.h"
 
 #include "core/error.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <fmt/format.h>
 

@@ -55,7 +55,7 @@ std::string batchTable(const std::vector<BakeJob>& jobs, const std::vector<Batch
     std::string text = fmt::format("{:<{}} {:<11} {:>9} {:>9} {:>9} {:>9} {:>10} {:>8}\n", "scene", width, "status",
                                    "patches", "rays", "seconds", "memory MB", "imbalance", "warnings");
     for (std::size_t i = 0; i < rows.size(); ++i)
-        text += fmt::format("{:<{}} {}\n", oneLine(jobs[i].scene.string()), width, rowText(rows[i]));
+        text += fmt::format("{:<{}} {}\n", printable(jobs[i].scene.string()), width, rowText(rows[i]));
 
     text += fmt::format("{} scene{}", rows.size(), rows.size() == 1 ? "" : "s");
     const char* separator = ": ";

@@ -10,7 +10,7 @@
 
 #include "comparison/bake_comparison_report.h"
 #include "comparison/bake_page.h"
-#include "comparison/scale_bar.h"
+#include "comparison/page/scale_bar.h"
 
 #include <fmt/format.h>
 
@@ -79,7 +79,7 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
         files.push_back({"results.json", jsonText(reportOf(a, reference, other, comparison))});
         progress.throwIfCancelled();
         writePageFolder(a.output, std::move(files));
-        logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
+        logLine(a.run, printable(fmt::format("{}: open index.html in a browser", a.output.string())));
     }
     if (!a.picture.path.empty()) {
         const DifferencePicture found = differencePicture(reference, comparison, rays, shot.camera, size, progress);
@@ -104,9 +104,10 @@ ExitCode compareBakes(const CompareBakesArguments& a) {
     const StoredSolution other = readSolution(a.other);
     const BakeComparison comparison = compareBakes(reference, other, quantityOf(a));
     if (!comparison.samePatches)
-        logLine(a.run, oneLine(fmt::format("the patches differ: B is looked up at the centres of A's ({:.2g} % of the "
-                                           "area without counterpart)",
-                                           100.0 * comparison.unmatchedArea)));
+        logLine(a.run,
+                printable(fmt::format("the patches differ: B is looked up at the centres of A's ({:.2g} % of the "
+                                      "area without counterpart)",
+                                      100.0 * comparison.unmatchedArea)));
     show(a, reference, other, comparison, progress);
     if (!a.run.json.empty()) writeJson(reportOf(a, reference, other, comparison), a.run.json);
     fmt::print("{}", bakeComparisonText(comparison));

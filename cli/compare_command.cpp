@@ -12,7 +12,7 @@
 
 #include "comparison/form_factor_page.h"
 #include "comparison/form_factor_report.h"
-#include "comparison/gnuplot.h"
+#include "comparison/page/gnuplot.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "core/whole_file.h"
@@ -97,7 +97,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     options.seeds = a.seeds;
     options.seed = a.run.seed;
     options.threshold = a.threshold;
-    const BakeOptions mesh = bakeOptions(a.transport, a.run);
+    const MeshOptions mesh = meshOptions(a.transport);
     checkPicture(a.picture);
     std::vector<fs::path> inputs = inputFiles(a.scene);
     if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
@@ -110,10 +110,10 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     const Stopwatch watch;
     const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
-    const MeshedScene scene = meshScene(read.scene, mesh.mesh, progress);
+    const MeshedScene scene = meshScene(read.scene, mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
-    logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
-                                       scene.mesh.size())));
+    logLine(a.run, printable(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(),
+                                         read.scene.polygons.size(), scene.mesh.size())));
     options.onRun = [&](const std::string& what) { progress.setTitle(what); };
     const FormFactorComparison comparison = compareFormFactors(scene, options, progress);
 
@@ -133,7 +133,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     writePageFolder(a.output, std::move(files));
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", comparisonText(comparison));
-    logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
+    logLine(a.run, printable(fmt::format("{}: open index.html in a browser", a.output.string())));
     return ExitCode::Ok;
 }
 

@@ -9,12 +9,12 @@
 #include "cli/terminal_text.h"
 #include "cli/validators.h"
 
-#include "comparison/gnuplot.h"
-#include "comparison/instant_radiosity_method.h"
+#include "comparison/page/gnuplot.h"
 #include "comparison/vpl_page.h"
 #include "comparison/vpl_report.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "vpl/instant_radiosity_method.h"
 
 #include <fmt/format.h>
 
@@ -101,15 +101,6 @@ void checkWhole(double value, const char* option) {
         throw UsageError(fmt::format("{}: found {:g}, allowed are whole numbers", option, value));
 }
 
-/// By steps of four around the number of the anatomy, unless given.
-std::vector<double> ladder(const CompareVplArguments& a) {
-    if (!a.ladder.empty()) return a.ladder;
-    std::vector<double> efforts;
-    for (const double factor : {1.0 / 16.0, 1.0 / 4.0, 4.0, 16.0})
-        efforts.push_back(std::clamp(std::floor(factor * a.vpls), 1.0, kMostVpls));
-    return efforts;
-}
-
 nlohmann::ordered_json report(const CompareVplArguments& a, const ReadReport& read, const MeshedScene& scene,
                               const VplComparison& comparison, const VplPictures& pictures, double seconds) {
     nlohmann::ordered_json json;
@@ -158,7 +149,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     checkWhole(a.vpls, "--vpls");
     for (const double vpls : a.ladder) checkWhole(vpls, "--ladder");
     options.effort = a.vpls;
-    options.ladder = ladder(a);
+    if (!a.ladder.empty()) options.ladder = a.ladder;
     options.seeds = a.seeds;
     options.seed = a.run.seed;
     MeshOptions mesh = meshOptions(a.transport);
@@ -175,8 +166,8 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     logReport(a.run, read.report);
     const MeshedScene scene = meshLitScene(read.scene, mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
-    logLine(a.run, oneLine(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
-                                       scene.mesh.size())));
+    logLine(a.run, printable(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(),
+                                         read.scene.polygons.size(), scene.mesh.size())));
     options.onStage = [&](const std::string& what) { progress.setTitle(what); };
     options.gathering.seed = a.run.seed;
     const Stopwatch referenceWatch;
@@ -209,7 +200,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     writePageFolder(a.output, std::move(files));
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", vplComparisonText(comparison));
-    logLine(a.run, oneLine(fmt::format("{}: open index.html in a browser", a.output.string())));
+    logLine(a.run, printable(fmt::format("{}: open index.html in a browser", a.output.string())));
     return judgeReference(reference.imbalance());
 }
 

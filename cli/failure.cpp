@@ -9,11 +9,11 @@ Failure currentFailure() {
     try {
         throw;
     } catch (const Error& error) {
-        return {error.exitCode(), oneLine(error.what())};
+        return {error.exitCode(), printable(error.what())};
     } catch (const std::bad_alloc&) {
         return {ExitCode::System, "not enough memory"};
     } catch (const std::exception& error) {
-        return {ExitCode::System, oneLine(error.what())};
+        return {ExitCode::System, printable(error.what())};
     }
 }
 

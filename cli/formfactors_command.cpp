@@ -9,12 +9,12 @@
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
-#include "baking/factor_diagnosis.h"
 #include "core/parallel.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "core/whole_file.h"
 #include "formfactors/matrix_file.h"
+#include "lighting/factor_diagnosis.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -96,11 +96,11 @@ struct Run {
 
     void warn(const std::string& text) {
         warnings.push_back(text);
-        warnLine(oneLine(text));
+        warnLine(printable(text));
     }
     void setComment(const std::string& method) {
-        comment = oneLine(fmt::format("scene {}, {}, {} patches, lambert {}", a.scene.path.string(), method,
-                                      scene.mesh.size(), LAMBERT_VERSION));
+        comment = printable(fmt::format("scene {}, {}, {} patches, lambert {}", a.scene.path.string(), method,
+                                        scene.mesh.size(), LAMBERT_VERSION));
     }
 };
 
@@ -122,7 +122,7 @@ void readAndMesh(Run& run) {
     const CoverReport& cover = run.scene.prepareReport.cover;
     if (const std::string overlaps = overlapText(*run.scene.scene, cover); !overlaps.empty()) {
         if (cover.takenAway)
-            logLine(run.a.run, oneLine(overlaps));
+            logLine(run.a.run, printable(overlaps));
         else
             run.warn(overlaps);
     }
@@ -247,7 +247,8 @@ void computePatches(Run& run) {
     if (!a.temperatures.empty()) temperatures = readTemperatures(a.temperatures, groups->names);
 
     Stopwatch watch;
-    SceneMatrix obtained = obtainMatrix(run.source, mesh, *run.scene.rays, run.progress);
+    SceneMatrix obtained =
+        obtainMatrix(run.source, checkpointOptions(a.transport), mesh, *run.scene.rays, run.progress);
     run.seconds["form_factors"] = watch.lap();
     if (obtained.plan)
         logLine(a.run,
@@ -273,7 +274,7 @@ void computePatches(Run& run) {
     if (!groups && !a.output.empty()) {
         run.progress.begin("write", 0);
         PatchMatrix patches{std::move(obtained.matrix), {mesh.area.begin(), mesh.area.end()}};
-        for (const Rgb& rho : mesh.reflectance)
+        for (const Rgb& rho : run.scene.optics.reflectance)
             patches.emissivity.push_back(
                 1.0 - (static_cast<double>(rho.x) + static_cast<double>(rho.y) + static_cast<double>(rho.z)) / 3.0);
         writeMatrix(a.output, patches, run.comment, run.progress);

@@ -24,7 +24,7 @@ std::string padded(const std::string& text, std::size_t width) {
 }
 
 std::string shortened(const std::string& name) {
-    const std::string text = oneLine(name);
+    const std::string text = printable(name);
     if (widthOf(text) <= kWidest) return text;
     std::size_t end = kWidest - 1; // not inside a character
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
@@ -32,7 +32,7 @@ std::string shortened(const std::string& name) {
 }
 
 std::string quoted(const std::string& name) {
-    const std::string text = oneLine(name);
+    const std::string text = printable(name);
     if (text.find_first_of(",\"#") == std::string::npos) return text;
     std::string result = "\"";
     for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
@@ -51,7 +51,7 @@ std::string heatTable(const GroupReport& r, std::size_t nameWidth) {
     for (std::size_t g = 0; g < r.factors.groups; ++g) {
         const ThermalSurface& surface = r.temperatures->surfaces[g];
         adiabatic = adiabatic || !surface.kelvin;
-        text += fmt::format("{} {:>11} {:>11} {:>14.7g} {:>14.7g}\n", padded(oneLine(r.groups.names[g]), nameWidth),
+        text += fmt::format("{} {:>11} {:>11} {:>14.7g} {:>14.7g}\n", padded(printable(r.groups.names[g]), nameWidth),
                             kelvinText(*r.temperatures, heat, g),
                             surface.kelvin ? fmt::format("{:g}", surface.emissivity) : "-", heat.flow[g],
                             r.factors.mean(heat.flow[g], g));
@@ -73,7 +73,7 @@ std::string reciprocityText(const GroupReport& r, const GroupReciprocity& recipr
         fmt::format("reciprocity: A F of both directions differ by {:.2g} % RMS", 100.0 * reciprocity.rms);
     if (worst > 0.0)
         text += fmt::format(", at most by {:.2g} % between {} and {}", 100.0 * worst,
-                            oneLine(r.groups.names[reciprocity.a]), oneLine(r.groups.names[reciprocity.b]));
+                            printable(r.groups.names[reciprocity.a]), printable(r.groups.names[reciprocity.b]));
     return text + "\n";
 }
 
@@ -82,7 +82,7 @@ std::string reciprocityText(const GroupReport& r, const GroupReciprocity& recipr
 std::string groupTable(const GroupReport& r) {
     const GroupFactors& f = r.factors;
     std::size_t nameWidth = 14;
-    for (const std::string& name : r.groups.names) nameWidth = std::max(nameWidth, widthOf(oneLine(name)));
+    for (const std::string& name : r.groups.names) nameWidth = std::max(nameWidth, widthOf(printable(name)));
     const std::size_t columns = std::min(f.groups, kMostColumns);
     const auto table = [&](const char* title, const char* last, auto cell, auto back, auto out, auto check) {
         std::string text = fmt::format("{} {:>10}", padded(title, nameWidth), "area m²");
@@ -93,7 +93,7 @@ std::string groupTable(const GroupReport& r) {
         if (columns < f.groups) text += fmt::format("  … {} more", f.groups - columns);
         text += fmt::format("       (back)      (out) {:>12}\n", last);
         for (std::size_t i = 0; i < f.groups; ++i) {
-            text += fmt::format("{} {:>10.5g}", padded(oneLine(r.groups.names[i]), nameWidth), f.area[i]);
+            text += fmt::format("{} {:>10.5g}", padded(printable(r.groups.names[i]), nameWidth), f.area[i]);
             for (std::size_t j = 0; j < columns; ++j)
                 text += fmt::format("  {:>{}.5g}", cell(i, j),
                                     std::max<std::size_t>(10, widthOf(shortened(r.groups.names[j]))));
@@ -119,7 +119,7 @@ std::string groupTable(const GroupReport& r) {
 std::string groupCsv(const GroupReport& r, const std::string& comment) {
     const GroupFactors& f = r.factors;
     const GroupReciprocity reciprocity = groupReciprocity(f);
-    std::string text = fmt::format("# {}\n", oneLine(comment));
+    std::string text = fmt::format("# {}\n", printable(comment));
     text += "group,area";
     for (const std::string& name : r.groups.names) text += "," + quoted("F to " + name);
     text += ",F_back,F_out";

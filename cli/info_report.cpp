@@ -183,7 +183,7 @@ std::string rgb(const Rgb& c) { return fmt::format("{:.3g} {:.3g} {:.3g}", c.x, 
 
 /// A name in a column, cut where it is too wide.
 std::string column(const std::string& name, std::size_t width) {
-    std::string text = oneLine(name);
+    std::string text = printable(name);
     if (text.size() <= width) return text;
     std::size_t end = width - 3;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end; // not inside a character
@@ -195,7 +195,7 @@ void printSummary(const InfoReportInput& in) {
     const ReadReport& report = in.read.report;
     const glm::vec3 size = facts.bounds.size();
     const double unit = report.overrides.metresPerUnit;
-    fmt::print("scene       {}\n", oneLine(in.path.string()));
+    fmt::print("scene       {}\n", printable(in.path.string()));
     fmt::print("size        {:.4g} × {:.4g} × {:.4g} m, from {}{}\n", size.x, size.y, size.z,
                placeText(in.read.scene, facts.bounds.lower),
                unit == 1.0 ? "" : fmt::format("; {:g} m per unit of the file", unit));
@@ -224,10 +224,10 @@ void printSummary(const InfoReportInput& in) {
 
 void printLightsAndCameras(const Scene& scene) {
     for (const PunctualLight& light : scene.lights)
-        fmt::print("light       {}: {}, {} {}\n", oneLine(light.name), kindName(light.kind), rgb(light.intensity),
+        fmt::print("light       {}: {}, {} {}\n", printable(light.name), kindName(light.kind), rgb(light.intensity),
                    light.kind == PunctualLight::Kind::Directional ? "lx" : "cd");
     for (const Camera& camera : scene.cameras)
-        fmt::print("camera      {}: eye {}, {:.1f}° vertically\n", oneLine(camera.name), placeText(scene, camera.eye),
+        fmt::print("camera      {}: eye {}, {:.1f}° vertically\n", printable(camera.name), placeText(scene, camera.eye),
                    degrees(camera.verticalFov));
 }
 
@@ -282,7 +282,7 @@ void printInfo(const InfoReportInput& in) {
     printMaterials(in);
     printNodes(in);
     if (!in.findings.empty()) fmt::print("\nworth a look\n");
-    for (const Finding& finding : in.findings) fmt::print("  {}: {}\n", oneLine(finding.problem), finding.remedy);
+    for (const Finding& finding : in.findings) fmt::print("  {}: {}\n", printable(finding.problem), finding.remedy);
 }
 
 } // namespace lambert

@@ -15,7 +15,7 @@ namespace {
 using lambert::ExitCode;
 
 int fail(ExitCode code, const std::string& message) {
-    lambert::writeLog("lambert: " + lambert::oneLine(message) + "\n");
+    lambert::writeLog("lambert: " + lambert::printable(message) + "\n");
     return static_cast<int>(code);
 }
 

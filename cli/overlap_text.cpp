@@ -1,6 +1,6 @@
 #include "cli/overlap_text.h"
 
-#include "scene/input_file.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

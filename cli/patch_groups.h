@@ -1,6 +1,6 @@
 #pragma once
 
-#include "baking/mesh_scene.h"
+#include "meshing/mesh_scene.h"
 
 #include <cstdint>
 #include <string>

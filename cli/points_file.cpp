@@ -65,7 +65,7 @@ std::vector<SensorPoint> readPoints(const std::filesystem::path& path) {
             points.push_back(toPoint(numbers, place));
         else if (!headerAllowed || !numbers.empty())
             throw InputError(
-                fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place, oneLine(line.substr(0, 60))));
+                fmt::format("{}: found \"{}\", expected x,y,z,nx,ny,nz", place, printable(line.substr(0, 60))));
         headerAllowed = false;
     }
     if (points.empty()) throw InputError(fmt::format("{}: holds no points", path.string()));

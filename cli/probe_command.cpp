@@ -53,12 +53,12 @@ nlohmann::ordered_json probesJson(const std::vector<ProbeReading>& readings) {
 }
 
 ExitCode probe(const ProbeArguments& a) {
-    const BakeOptions options = bakeOptions(a.transport, a.run);
+    const SolveOptions options = solveOptions(a.transport, a.run);
     std::vector<std::filesystem::path> inputs = inputFiles(a.scene);
     inputs.push_back(a.points);
     addTransportInputs(a.transport, inputs);
-    const CheckpointOptions rows{a.transport.checkpoint};
-    checkTargets(std::array{a.output, a.run.json, rows.path, solverCheckpointPath(rows)}, inputs);
+    const auto& rows = a.transport.checkpoint;
+    checkTargets(std::array{a.output, a.run.json, rows, solverCheckpointPath(rows)}, inputs);
     applyThreads(a.run);
     TerminalProgress progress(a.run.quiet);
     const InterruptGuard interrupt(progress);
@@ -68,10 +68,10 @@ ExitCode probe(const ProbeArguments& a) {
     addDaylight(read.scene, a.transport.light);
     const double readSeconds = total.seconds();
     logReport(a.run, read.report);
-    const BakedScene baked = bakeScene(read.scene, options, progress);
-    for (const std::string& warning : baked.warnings) warnLine(oneLine(warning));
-    const std::vector<ProbeReading> readings =
-        probeIrradiance(baked, options, pointsInScene(points, *baked.scene), progress);
+    const SolvedScene solved = solveScene(read.scene, options, progress);
+    for (const std::string& warning : solved.warnings) warnLine(printable(warning));
+    const std::vector<ProbeReading> readings = probeIrradiance(solved, options, reconstructionOptions(a.transport),
+                                                               pointsInScene(points, *solved.scene), progress);
     const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
     if (inSpace > 0)
         logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));
@@ -81,16 +81,16 @@ ExitCode probe(const ProbeArguments& a) {
         fmt::print("{}", text);
     else
         writeWholeFile(a.output, text);
-    const BakeVerdict verdict = judge(options, baked);
-    for (const std::string& warning : verdict.warnings) warnLine(oneLine(warning));
+    const BakeVerdict verdict = judge(options.method, solved);
+    for (const std::string& warning : verdict.warnings) warnLine(printable(warning));
     if (!a.run.json.empty()) {
-        auto report = bakeReport({baked, read.report, a.scene, a.transport, a.run, std::nullopt, std::nullopt,
-                                  readSeconds, writing.seconds(), total.seconds()});
+        auto report = bakeReport({solved, options, read.report, a.scene, a.transport, a.run, readSeconds,
+                                  writing.seconds(), total.seconds()});
         for (const std::string& warning : verdict.warnings) report["warnings"].push_back(warning);
         report["probes"] = probesJson(readings);
         writeJson(report, a.run.json);
     }
-    removeCheckpoints(baked);
+    removeCheckpoints(solved);
     return verdict.exitCode;
 }
 

@@ -4,14 +4,12 @@
 #include "cli/arguments.h"
 
 #include "core/error.h"
-#include "scene/distant_origin.h"
-#include "scene/overrides_file.h"
+#include "scene/reading/changed_scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace lambert {
 
@@ -55,41 +53,8 @@ SceneOverrides typedOverrides(const SceneArguments& a) {
     return result;
 }
 
-/// `later` after `earlier`, so that it wins.
-SceneOverrides joined(SceneOverrides earlier, SceneOverrides later) {
-    std::move(later.materials.begin(), later.materials.end(), std::back_inserter(earlier.materials));
-    std::move(later.nodes.begin(), later.nodes.end(), std::back_inserter(earlier.nodes));
-    return earlier;
-}
-
-bool isGltf(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".gltf" || extension == ".glb";
-}
-
-/// The file's and the options' settings as one.
-AppliedOverrides gatherOverrides(const SceneArguments& a) {
-    AppliedOverrides result;
-    result.file = overridesFileOf(a);
-    OverridesFile file;
-    if (!result.file.empty()) file = readOverridesFile(result.file);
-    if (!a.unit && file.metresPerUnit.value_or(1.0) != 1.0 && isGltf(a.path))
-        throw InputError(fmt::format("{}: /unit: found {:g}, allowed is 1: glTF is in metres", result.file.string(),
-                                     *file.metresPerUnit));
-    result.metresPerUnit = a.unit ? *a.unit : file.metresPerUnit.value_or(1.0);
-    result.twoSided = a.twoSided || file.twoSided.value_or(false);
-    if (a.twoSided)
-        for (MaterialOverride& change : file.overrides.materials) change.twoSided.reset();
-    result.changes = joined(std::move(file.overrides), typedOverrides(a));
-    return result;
-}
-
-/// How much farther from the file's origin that of the scene should be, as its polygons are now.
-glm::dvec3 neededShift(const Scene& scene) {
-    const Bounds bounds = boundsOf(scene);
-    return distantOrigin({glm::dvec3(bounds.lower), glm::dvec3(bounds.upper)});
+SceneChanges changesOf(const SceneArguments& a) {
+    return {a.overrides, a.noOverrides, a.unit, a.twoSided, typedOverrides(a)};
 }
 
 } // namespace
@@ -138,37 +103,18 @@ void addSceneOptions(CLI::App& command, SceneArguments& a) {
 }
 
 bool unitIsGiven(const SceneArguments& a, const AppliedOverrides& overrides) {
-    return a.unit || overrides.metresPerUnit != 1.0 || isGltf(a.path);
-}
-
-std::filesystem::path overridesFileOf(const SceneArguments& a) {
-    if (!a.overrides.empty()) return a.overrides;
-    std::error_code ignored;
-    const std::filesystem::path beside = overridesFileBeside(a.path);
-    return !a.noOverrides && std::filesystem::exists(beside, ignored) ? beside : std::filesystem::path();
+    return a.unit || overrides.metresPerUnit != 1.0 || isInMetres(a.path);
 }
 
 ReadResult readScene(const SceneArguments& a, Progress* progress) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
-    AppliedOverrides overrides = gatherOverrides(a);
-    ReadOptions options{.metresPerUnit = overrides.metresPerUnit,
-                        .twoSided = overrides.twoSided,
-                        .strict = a.strict,
-                        .allowOutsideFiles = a.allowOutsideFiles,
-                        .progress = progress,
-                        .curveSegments = a.curveSegments,
-                        .mostPolygons = a.mostPolygons};
-    ReadResult result = readScene(a.path, options);
-    applyOverrides(result.scene, overrides.changes);
-    // What is excluded may be all that kept the scene near the file's origin.
-    if (const glm::dvec3 shift = neededShift(result.scene); shift != glm::dvec3(0.0)) {
-        options.origin = result.scene.origin + shift;
-        result = readScene(a.path, options);
-        applyOverrides(result.scene, overrides.changes);
-    }
-    result.report.overrides = std::move(overrides);
-    return result;
+    return readChangedScene(a.path, changesOf(a),
+                            {.strict = a.strict,
+                             .allowOutsideFiles = a.allowOutsideFiles,
+                             .progress = progress,
+                             .curveSegments = a.curveSegments,
+                             .mostPolygons = a.mostPolygons});
 }
 
 } // namespace lambert

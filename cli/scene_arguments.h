@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <CLI/CLI.hpp>
 
@@ -37,8 +37,5 @@ ReadResult readScene(const SceneArguments& arguments, Progress* progress = nullp
 
 /// Whether the lengths of the scene are settled: by an option, the overrides file, or because it is glTF.
 bool unitIsGiven(const SceneArguments& arguments, const AppliedOverrides& overrides);
-
-/// The overrides file that counts for a scene; empty if there is none.
-std::filesystem::path overridesFileOf(const SceneArguments& arguments);
 
 } // namespace lambert

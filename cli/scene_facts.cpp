@@ -1,8 +1,9 @@
 #include "cli/scene_facts.h"
 
 #include "cli/overlap_text.h"
+#include "core/text.h"
 #include "meshing/build_patch_mesh.h"
-#include "scene/input_file.h"
+#include "meshing/patch_optics.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -176,9 +177,10 @@ glm::dvec3 emittedPower(const Scene& prepared) {
     MeshOptions options;
     options.patches = 0;
     const PatchMesh mesh = buildPatchMesh(prepared, options, progress);
+    const PatchOptics optics = patchOptics(prepared, mesh);
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < mesh.size(); ++i)
-        sum += static_cast<double>(mesh.area[i]) * glm::dvec3(mesh.emittedRadiosity[i]);
+        sum += static_cast<double>(mesh.area[i]) * glm::dvec3(optics.emittedRadiosity[i]);
     return sum;
 }
 

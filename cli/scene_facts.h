@@ -1,10 +1,10 @@
 #pragma once
 
-#include "baking/lost_light.h"
+#include "lighting/lost_light.h"
 #include "meshing/back_faces.h"
 #include "meshing/prepare.h"
 #include "meshing/surface_check.h"
-#include "scene/scene_reader.h"
+#include "scene/reading.h"
 #include "scene/unit_guess.h"
 
 #include <glm/vec3.hpp>

@@ -2,14 +2,16 @@
 
 #include "baking/write_baked.h"
 #include "core/error.h"
-#include "scene/gltf_container.h"
-#include "scene/gltf_uri.h"
-#include "scene/input_file.h"
-#include "scene/mgf_file.h"
-#include "scene/obj_lines.h"
-#include "scene/obj_mtl.h"
-#include "scene/overrides_file.h"
-#include "scene/scene_reader.h"
+#include "core/input_file.h"
+#include "scene/gltf/container.h"
+#include "scene/gltf/uri.h"
+#include "scene/mgf/file.h"
+#include "scene/named_file.h"
+#include "scene/obj/lines.h"
+#include "scene/obj/mtl.h"
+#include "scene/reading.h"
+#include "scene/reading/overrides_file.h"
+#include "scene/words.h"
 
 #include <nlohmann/json.hpp>
 

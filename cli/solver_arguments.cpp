@@ -8,12 +8,14 @@
 namespace lambert {
 
 void addSolverArguments(CLI::App& command, TransportArguments& a) {
+    std::vector<std::string> solvers = solverNames();
+    for (const std::string& name : lineSolverNames()) solvers.push_back(name);
     command
         .add_option("--solver", a.solver,
                     fmt::format("How the light of all bounces is found: {} [conjugate-gradient; jacobi for --bounces "
                                 "and --keep-bounces]",
-                                fmt::join(solverNames(), ", ")))
-        ->check(CLI::IsMember(solverNames()))
+                                fmt::join(solvers, ", ")))
+        ->check(CLI::IsMember(solvers))
         ->type_name("SOLVER")
         ->group("Solution");
     command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
@@ -60,12 +62,13 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
 
 namespace {
 
-void refuseFormFactors(const TransportArguments& a, SolverMethod method) {
-    const auto refuse = [&](bool given, const char* option) {
-        if (given)
-            throw UsageError(
-                fmt::format("{}: means nothing to the solver {}, which uses no form factors", option, nameOf(method)));
+void refuseFormFactors(const TransportArguments& a, LineSolver solver) {
+    const auto refuse = [&](bool given, const char* option, const char* why = ", which uses no form factors") {
+        if (given) throw UsageError(fmt::format("{}: means nothing to the solver {}{}", option, nameOf(solver), why));
     };
+    refuse(a.bounces > 0, "--bounces", "");
+    refuse(a.keepBounces, "--keep-bounces", "");
+    refuse(a.relaxation.has_value(), "--relaxation", "");
     refuse(a.resolution.has_value(), "--resolution");
     refuse(a.hemicubes.has_value(), "--hemicubes");
     refuse(a.rotation.has_value(), "--rotation");
@@ -82,12 +85,12 @@ void refuseFormFactors(const TransportArguments& a, SolverMethod method) {
 
 LineSolverOptions lineSolverOptions(const TransportArguments& a, const RunArguments& run) {
     LineSolverOptions options;
-    options.method = solverOptions(a).method;
-    refuseFormFactors(a, options.method);
+    options.solver = lineSolverByName(a.solver.value()).value();
+    refuseFormFactors(a, options.solver);
     const std::string method = a.method.value_or("local-lines");
     if (method != "local-lines" && method != "global-lines")
         throw UsageError(fmt::format("--method: the solver {} works with local-lines or global-lines, not with {}",
-                                     nameOf(options.method), method));
+                                     nameOf(options.solver), method));
     options.lines = method == "global-lines" ? RelaxationLines::Global : RelaxationLines::Local;
     if (a.lineSet && options.lines == RelaxationLines::Local)
         throw UsageError("--line-set: means nothing to local-lines");
@@ -123,7 +126,7 @@ SolverOptions solverOptions(const TransportArguments& a) {
     options.bounces = a.bounces;
     options.keepBounces = a.keepBounces;
     options.relaxation = a.relaxation;
-    if (!usesLines(options.method) && (a.rays || a.targetError))
+    if (a.rays || a.targetError)
         throw UsageError(fmt::format("{}: means nothing to the solver {}", a.rays ? "--rays" : "--target-error",
                                      nameOf(options.method)));
     checkSolver(options, !a.warmStart.empty());

@@ -73,18 +73,18 @@ Temperatures readTemperatures(const std::filesystem::path& path, const std::vect
             if (mayBeHeader && found == groups.end()) continue;
             fail(fmt::format("found \"{}\", expected group,kelvin,emissivity with a temperature from 0 to {:g} or "
                              "adiabatic",
-                             oneLine(line.substr(0, 60)), kHottest));
+                             printable(line.substr(0, 60)), kHottest));
         }
         if (found == groups.end() || (fields[0] == "environment" && fields.size() == 2)) {
             if (fields[0] != "environment")
-                fail(fmt::format("no group \"{}\"; there are {}", oneLine(fields[0]), fmt::join(groups, ", ")));
+                fail(fmt::format("no group \"{}\"; there are {}", printable(fields[0]), fmt::join(groups, ", ")));
             if (!kelvin) fail("the environment needs a temperature");
             if (std::exchange(environmentKnown, true)) fail("the environment stands twice");
             result.environment = *kelvin;
             continue;
         }
         const auto group = static_cast<std::size_t>(found - groups.begin());
-        if (known[group]) fail(fmt::format("\"{}\" stands twice", oneLine(fields[0])));
+        if (known[group]) fail(fmt::format("\"{}\" stands twice", printable(fields[0])));
         known[group] = true;
         if (adiabatic) {
             result.surfaces[group] = {std::nullopt, 1.0};
@@ -93,14 +93,14 @@ Temperatures readTemperatures(const std::filesystem::path& path, const std::vect
         const auto emissivity = fields.size() >= 3 ? numberOf(fields[2], 1.0) : std::nullopt;
         if (!emissivity)
             fail(fmt::format("found {}, expected an emissivity from 0 to 1 after the temperature",
-                             fields.size() >= 3 ? "\"" + oneLine(fields[2]) + "\"" : "nothing"));
+                             fields.size() >= 3 ? "\"" + printable(fields[2]) + "\"" : "nothing"));
         result.surfaces[group] = {kelvin, *emissivity};
     }
     std::vector<std::string> missing;
     for (std::size_t g = 0; g < groups.size(); ++g)
         if (!known[g]) missing.push_back(groups[g]);
     if (!missing.empty())
-        throw InputError(oneLine(fmt::format("{}: no temperature for {}", path.string(), fmt::join(missing, ", "))));
+        throw InputError(printable(fmt::format("{}: no temperature for {}", path.string(), fmt::join(missing, ", "))));
     return result;
 }
 

@@ -59,7 +59,8 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
     };
     addChoice("--method", a.method,
-              fmt::format("How form factors are computed, or light without them: {} [auto; hemicube with its options]", fmt::join(methods, ", ")),
+              fmt::format("How form factors are computed, or light without them: {} [auto; hemicube with its options]",
+                          fmt::join(methods, ", ")),
               "METHOD", methods);
     addNumber(
         "--resolution", a.resolution,
@@ -131,12 +132,10 @@ MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) 
     options.stored = a.storage != "none";
     options.storage = storageByName(a.storage); // no value for auto
     options.memoryLimit = static_cast<std::uint64_t>(a.memoryLimit);
-    options.largestResolution = quality.resolution;
-    options.mostRays = quality.rays;
+    options.largestResolution = quality.largestResolution;
+    options.mostRays = quality.mostRays;
     source.file = a.formFactors;
     source.repair = a.repair;
-    source.checkpoint = {a.checkpoint, a.resume, a.checkpointInterval};
-    source.version = LAMBERT_VERSION;
     if (!options.stored) refuseWithoutMatrix(a);
     if (a.formFactors.empty())
         refuseUnused(a, options.method);

@@ -4,14 +4,13 @@ find_package(glm CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
-find_package(embree 3 CONFIG REQUIRED)
-find_package(TinyGLTF CONFIG REQUIRED)
-# Debian's libdraco holds a tinygltf of its own, of another layout, and what is first among the libraries of a program is
-# what it gets. As a dependency of the real one Draco is always behind it: who needs Draco links TinyGLTF::TinyGLTF.
+# 4 is what Debian 13 has, 3 what Debian 12 has; scene/rays/embree.h knows both, and takes 4 as well where both are.
+find_package(embree 4 CONFIG QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 CONFIG REQUIRED)
+endif()
 find_package(draco CONFIG REQUIRED)
-set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(meshoptimizer CONFIG REQUIRED)
-find_package(tinyobjloader CONFIG REQUIRED)
 find_package(OpenImageIO CONFIG REQUIRED)
 # Debian's OpenImageIO target also names /usr/include/opencv4, which none of its packages brings.
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES

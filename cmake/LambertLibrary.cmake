@@ -13,5 +13,8 @@ endif()
 function(lambert_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(lambert_${folder} STATIC ${arg_SOURCES})
+  # They are parts of a shared library too (see library/), which shows none of their names.
+  set_target_properties(lambert_${folder} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(lambert_${folder} PUBLIC lambert_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()

@@ -3,10 +3,10 @@
 #include "baking/exposure.h"
 #include "baking/reconstruction.h"
 #include "comparison/bake_comparison_report.h"
-#include "comparison/figure_text.h"
-#include "comparison/html_page.h"
-#include "comparison/page_files.h"
-#include "comparison/scale_bar.h"
+#include "comparison/page/figure_text.h"
+#include "comparison/page/html_page.h"
+#include "comparison/page/page_files.h"
+#include "comparison/page/scale_bar.h"
 #include "core/error.h"
 #include "rendering/render.h"
 
@@ -47,8 +47,7 @@ public:
         light();
         facts();
         definitions();
-        files_.files.insert(files_.files.begin(), {"index.html", page_.text()});
-        return std::move(files_.files);
+        return files_.with(page_);
     }
 
 private:
@@ -98,7 +97,7 @@ private:
 
     HtmlFigure picture(const std::string& name, const std::string& title, const StoredSolution& solution,
                        const RayCaster& rays, std::optional<float>& exposure) {
-        const BakedMesh baked = reconstructAverage(solution.meshed.mesh, *solution.meshed.scene, solution.solution, {});
+        const BakedMesh baked = reconstructAverage(solution.meshed.mesh, solution.meshed.optics, *solution.meshed.scene, solution.solution, {});
         if (!exposure) exposure = automaticExposure(baked, in_.quantity);
         RenderOptions options;
         options.width = in_.size.width;

@@ -1,7 +1,7 @@
 #include "comparison/compare_bakes.h"
 
 #include "core/error.h"
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "baking/baked_mesh.h"
-#include "baking/solution_file.h"
 #include "comparison/field_errors.h"
+#include "solver/solution_file.h"
 
 #include <array>
 #include <vector>

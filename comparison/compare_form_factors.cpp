@@ -61,7 +61,7 @@ class Run {
 public:
     Run(const MeshedScene& scene, const FormFactorComparisonOptions& options, Progress& progress)
         : scene_(scene), options_(options), progress_(progress) {
-        const auto& emitted = scene.mesh.emittedRadiosity;
+        const auto& emitted = scene.optics.emittedRadiosity;
         result_.lit = std::any_of(emitted.begin(), emitted.end(), [](const Rgb& b) { return b != Rgb(0.0F); });
         result_.threshold = options.threshold.value_or(0.1 / static_cast<double>(scene.mesh.size()));
     }
@@ -132,7 +132,8 @@ private:
         run.reciprocity = quality.reciprocityRms;
         if (result_.lit) {
             const RadiositySolution solution = solved(matrix);
-            run.radiosity = radiosityError(scene_.mesh, solution.radiosity, result_.referenceSolution.radiosity);
+            run.radiosity =
+                radiosityError(scene_.mesh, scene_.optics, solution.radiosity, result_.referenceSolution.radiosity);
         }
         if (shown == nullptr) return;
         shown->misdirectedBy = std::move(errors.misdirectedBy);
@@ -141,7 +142,7 @@ private:
 
     RadiositySolution solved(const FormFactorMatrix& matrix) {
         StoredRows rows(matrix);
-        return solve(SolverProblem(scene_.mesh), rows, kSolve, progress_);
+        return solve(SolverProblem({scene_.mesh, scene_.optics}), rows, kSolve, progress_);
     }
 
     const MeshedScene& scene_;

@@ -2,7 +2,7 @@
 
 #include "comparison/form_factor_errors.h"
 #include "comparison/reference_matrix.h"
-#include "comparison/statistics.h"
+#include "core/statistics.h"
 #include "solver/solution.h"
 
 #include <cstdint>

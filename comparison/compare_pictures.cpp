@@ -2,7 +2,7 @@
 
 #include "comparison/flip.h"
 #include "core/stopwatch.h"
-#include "rendering/tone_mapping.h"
+#include "picture/tone_mapping.h"
 
 #include <glm/common.hpp>
 
@@ -108,7 +108,8 @@ VplPictures comparePictures(const MeshedScene& scene, const RadiosityReference& 
     for (const auto& method : options.methods) {
         tell(method->name() + ", picture");
         const Stopwatch watch;
-        const MethodLight light = method->light(*scene.rays, pixels.receivers, options.effort, options.seed, progress);
+        const VplView view{pixels.receivers, PictureView{picture.camera, picture.width, picture.height, pixels.pixel}};
+        const MethodLight light = method->light(*scene.rays, view, options.effort, options.seed, progress);
         const double seconds = watch.seconds();
         result.methods.push_back(compared(pixels.picture(light.irradiance), result));
         result.methods.back().seconds = seconds;

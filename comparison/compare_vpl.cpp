@@ -1,6 +1,6 @@
 #include "comparison/compare_vpl.h"
 
-#include "comparison/figure_text.h"
+#include "comparison/page/figure_text.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
 
@@ -43,12 +43,12 @@ private:
         if (options_.onStage) options_.onStage(what);
     }
     std::uint64_t seed(int k) const { return options_.seed + static_cast<std::uint64_t>(k); }
-    int seedsOf(const VplMethod& method) const { return method.isRandom() ? options_.seeds : 1; }
+    VplView view() const { return {result_.points.receivers}; }
 
     VplMethodResult compared(const std::shared_ptr<const VplMethod>& method) {
         VplMethodResult result;
         result.method = method;
-        std::vector<double> efforts = options_.ladder;
+        std::vector<double> efforts = options_.ladder.value_or(method->ladder(options_.effort));
         efforts.push_back(options_.effort);
         std::sort(efforts.begin(), efforts.end());
         efforts.erase(std::unique(efforts.begin(), efforts.end()), efforts.end());
@@ -65,11 +65,12 @@ private:
         VplRung rung;
         rung.effort = effort;
         std::vector<Field> fields;
-        for (int k = 0; k < seedsOf(method); ++k) {
-            tell(fmt::format("{} {}, seed {} of {}", method.name(), countText(effort), k + 1, seedsOf(method)));
+        for (int k = 0; k < method.seeds(options_.seeds); ++k) {
+            tell(fmt::format("{} {}, seed {} of {}", method.name(), countText(effort), k + 1,
+                             method.seeds(options_.seeds)));
             const Stopwatch watch;
             const double start = processorSeconds();
-            MethodLight light = method.light(*scene_.rays, result_.points.receivers, effort, seed(k), progress_);
+            MethodLight light = method.light(*scene_.rays, view(), effort, seed(k), progress_);
             VplRun& run = rung.runs.emplace_back();
             run.processorSeconds = processorSeconds() - start;
             run.wallSeconds = watch.seconds();
@@ -85,10 +86,10 @@ private:
     std::vector<VplBounce> bounces(const VplMethod& method) {
         const std::vector<ReferenceLight>& known = result_.referenceBounces;
         std::vector<VplBounce> result(known.size());
-        for (int k = 0; k < seedsOf(method); ++k) {
-            tell(fmt::format("{}, by bounce, seed {} of {}", method.name(), k + 1, seedsOf(method)));
+        for (int k = 0; k < method.seeds(options_.seeds); ++k) {
+            tell(fmt::format("{}, by bounce, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
             const std::vector<Field> fields =
-                method.lightByBounce(*scene_.rays, result_.points.receivers, options_.effort, seed(k),
+                method.lightByBounce(*scene_.rays, view(), options_.effort, seed(k),
                                      static_cast<std::uint32_t>(known.size() - 1), progress_);
             for (std::size_t b = 0; b < known.size(); ++b)
                 result[b].runs.push_back(lightErrors(result_.points.weight, known[b].irradiance, fields[b]));
@@ -119,12 +120,11 @@ private:
     void anatomise(VplMethodResult& result) {
         const VplMethod& method = *result.method;
         std::vector<std::vector<Field>> runs;
-        for (int k = 0; k < seedsOf(method); ++k) {
-            tell(fmt::format("{}, anatomy, seed {} of {}", method.name(), k + 1, seedsOf(method)));
-            runs.push_back(
-                method.exchanged(*scene_.rays, result_.points.receivers, options_.effort, seed(k), progress_));
+        for (int k = 0; k < method.seeds(options_.seeds); ++k) {
+            tell(fmt::format("{}, anatomy, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
+            runs.push_back(method.exchanged(*scene_.rays, view(), options_.effort, seed(k), progress_));
         }
-        const Approximation sampling{"sampling", fmt::format("{} particles", countText(options_.effort)),
+        const Approximation sampling{"sampling", fmt::format("{} {}", countText(options_.effort), method.effort().name),
                                      fmt::format("mean over {} runs", runs.size() - 1)};
         result.anatomy = errorAnatomy(result_.points.weight, result_.reference.irradiance,
                                       result_.reference.rms.total(), runs, method.approximations(), sampling);

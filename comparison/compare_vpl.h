@@ -3,7 +3,7 @@
 #include "comparison/error_anatomy.h"
 #include "comparison/field_errors.h"
 #include "comparison/radiosity_reference.h"
-#include "comparison/statistics.h"
+#include "core/statistics.h"
 
 #include <array>
 #include <functional>
@@ -59,10 +59,10 @@ struct VplMethodResult {
 
 struct VplComparisonOptions {
     std::vector<std::shared_ptr<const VplMethod>> methods;
-    double effort = 1024.0;     //!< of the anatomy, at least 1
-    std::vector<double> ladder; //!< further efforts
-    int seeds = 16;             //!< runs of each, >= 3
-    std::uint64_t seed = 1;     //!< of the first run; the others follow
+    double effort = 1024.0;                    //!< of the anatomy, at least 1
+    std::optional<std::vector<double>> ladder; //!< further efforts; none: those of each method, see VplMethod::ladder
+    int seeds = 16;                            //!< runs of each, >= 3
+    std::uint64_t seed = 1;                    //!< of the first run; the others follow
     ReferenceOptions reference;
     bool perBounce = false;                          //!< compares each bounce, as many as the reference knows apart
     PointGatherOptions gathering;                    //!< of the reference at the receivers

@@ -1,6 +1,6 @@
 #include "comparison/compared_methods.h"
 
-#include "comparison/figure_text.h"
+#include "comparison/page/figure_text.h"
 #include "core/error.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "comparison/compared_points.h"
 
 #include "meshing/patch_offset.h"
-#include "rendering/camera_rays.h"
+#include "picture/camera_rays.h"
 #include "scene/environment.h"
 #include "scene/surface.h"
 #include "vpl/particle_sources.h"

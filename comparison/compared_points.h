@@ -1,8 +1,8 @@
 #pragma once
 
 #include "meshing/patch_mesh.h"
-#include "rendering/image.h"
-#include "scene/ray_caster.h"
+#include "picture/image.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/solution.h"
 #include "vpl/receiver.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "comparison/vpl_method.h"
+#include "vpl/vpl_method.h"
 
 #include <span>
 #include <string>

@@ -3,6 +3,7 @@
 
 #include "baking/exposure.h"
 #include "core/parallel.h"
+#include "picture/srgb.h"
 
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rendering/image.h"
+#include "picture/image.h"
 
 #include <vector>
 

@@ -177,13 +177,14 @@ std::vector<FactorSizeError> errorsBySize(std::span<const FormFactorMatrix> foun
     return result;
 }
 
-double radiosityError(const PatchMesh& mesh, const std::vector<RgbSum>& found, const std::vector<RgbSum>& reference) {
+double radiosityError(const PatchMesh& mesh, const PatchOptics& optics, const std::vector<RgbSum>& found,
+                      const std::vector<RgbSum>& reference) {
     double errors = 0.0;
     double light = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const auto area = static_cast<double>(mesh.area[i]);
         const RgbSum error = found[i] - reference[i];
-        const RgbSum reflected = reference[i] - RgbSum(mesh.emittedRadiosity[i]);
+        const RgbSum reflected = reference[i] - RgbSum(optics.emittedRadiosity[i]);
         errors += area * glm::dot(error, error);
         light += area * glm::dot(reflected, reflected);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "formfactors/form_factor_matrix.h"
-#include "meshing/patch_mesh.h"
+#include "meshing/patch_optics.h"
 #include "solver/solution.h"
 
 #include <optional>
@@ -41,6 +41,7 @@ struct FactorSizeError {
 std::vector<FactorSizeError> errorsBySize(std::span<const FormFactorMatrix> found, const FormFactorMatrix& reference);
 
 /// √(Σ A |B − B_ref|² / Σ A |B_ref − B_e|²): relative to the reflected light, as no form factor changes what is emitted.
-double radiosityError(const PatchMesh& mesh, const std::vector<RgbSum>& found, const std::vector<RgbSum>& reference);
+double radiosityError(const PatchMesh& mesh, const PatchOptics& optics, const std::vector<RgbSum>& found,
+                      const std::vector<RgbSum>& reference);
 
 } // namespace lambert

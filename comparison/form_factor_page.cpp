@@ -1,11 +1,11 @@
 #include "comparison/form_factor_page.h"
 
 #include "baking/exposure.h"
-#include "comparison/figure_text.h"
 #include "comparison/form_factor_plots.h"
-#include "comparison/html_page.h"
-#include "comparison/page_files.h"
-#include "comparison/scale_bar.h"
+#include "comparison/page/figure_text.h"
+#include "comparison/page/html_page.h"
+#include "comparison/page/page_files.h"
+#include "comparison/page/scale_bar.h"
 #include "rendering/render.h"
 
 #include <fmt/format.h>
@@ -52,8 +52,7 @@ public:
                  &MethodResult::columnClosure);
         details();
         reading();
-        files_.files.insert(files_.files.begin(), {"index.html", page_.text()});
-        return std::move(files_.files);
+        return files_.with(page_);
     }
 
 private:
@@ -65,8 +64,10 @@ private:
     }
 
     Image scenePicture() {
-        if (!of_.lit) return headlightPicture(in_.meshed.mesh, *in_.meshed.rays, in_.camera, in_.size, progress_);
-        const BakedMesh baked = reconstructAverage(in_.meshed.mesh, *in_.meshed.scene, of_.referenceSolution, {});
+        if (!of_.lit)
+            return headlightPicture(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.rays, in_.camera, in_.size,
+                                    progress_);
+        const BakedMesh baked = reconstructAverage(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.scene, of_.referenceSolution, {});
         RenderOptions options;
         options.width = in_.size.width;
         options.height = in_.size.height;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "comparison/compare_form_factors.h"
-#include "comparison/plot.h"
+#include "comparison/page/plot.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "comparison/form_factor_report.h"
 
-#include "comparison/figure_text.h"
+#include "comparison/page/figure_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

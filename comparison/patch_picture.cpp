@@ -50,13 +50,13 @@ Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const 
     return image;
 }
 
-Image headlightPicture(const PatchMesh& mesh, const RayCaster& rays, const Camera& camera, const PictureSize& size,
-                       Progress& progress) {
+Image headlightPicture(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, const Camera& camera,
+                       const PictureSize& size, Progress& progress) {
     std::vector<Rgb> colours;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const glm::vec3 toEye = glm::normalize(camera.eye - mesh.centroid[i]);
         colours.push_back((0.1F + 0.8F * std::abs(glm::dot(mesh.normal[i], toEye))) *
-                          (0.3F + 0.7F * mesh.reflectance[i]));
+                          (0.3F + 0.7F * optics.reflectance[i]));
     }
     return flatPicture(mesh, rays, colours, camera, size, progress);
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "comparison/colour_scale.h"
+#include "comparison/page/colour_scale.h"
 #include "core/progress.h"
-#include "meshing/patch_mesh.h"
-#include "rendering/image.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "picture/image.h"
+#include "scene/rays/ray_caster.h"
 
 #include <span>
 
@@ -20,8 +20,8 @@ Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const 
                   const PictureSize& size, Progress& progress);
 
 /// The scene with each patch in its own grey, by how it is turned to the camera: for scenes without light.
-Image headlightPicture(const PatchMesh& mesh, const RayCaster& rays, const Camera& camera, const PictureSize& size,
-                       Progress& progress);
+Image headlightPicture(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, const Camera& camera,
+                       const PictureSize& size, Progress& progress);
 
 /// The scene with each patch in the colour of its value (#patches), on a neutral grey. Of display colours. Throws Cancelled.
 Image patchPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const float> values,

@@ -26,7 +26,7 @@ public:
           lights_(lights),
           options_(options),
           direct_(rays, {.skyRays = options.skyRays, .seed = options.seed}),
-          emitters_(rays, *lights.front().mesh, options.seed) {}
+          emitters_(rays, *lights.front().mesh, *lights.front().optics, options.seed) {}
 
     /// The light of each of the divisions at a point.
     void at(const Receiver& receiver, std::uint32_t index, std::span<RgbSum> sums) const {

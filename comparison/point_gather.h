@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/solution.h"
 #include "vpl/receiver.h"
 
@@ -15,6 +15,7 @@ namespace lambert {
 /// A scene's division into patches with the light that falls on them.
 struct PatchLight {
     const PatchMesh* mesh = nullptr;
+    const PatchOptics* optics = nullptr;
     std::span<const RgbSum> irradiance; //!< #patches, E per m²
 };
 

@@ -63,16 +63,18 @@ struct Solved {
 
 /// Form factors carry only what is reflected: direct light, of
 /// which lines that meet small emitters would give a noisy account, is found for itself.
-Solved solved(PatchMesh mesh, const RayCaster& rays, std::uint32_t lines, int bounces, std::uint64_t seed,
-              Progress& progress) {
+Solved solved(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, std::uint32_t lines, int bounces,
+              std::uint64_t seed, Progress& progress) {
     std::vector<RgbSum> direct = DirectLight(rays, {.seed = seed}).irradiance(mesh, lightsOf(rays.scene()), progress);
-    const std::vector<RgbSum> emitted = EmitterLight(rays, mesh, seed).irradiance(mesh, progress);
+    const std::vector<RgbSum> emitted = EmitterLight(rays, mesh, optics, seed).irradiance(mesh, progress);
     for (std::size_t i = 0; i < mesh.size(); ++i) direct[i] += emitted[i];
-    std::fill(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end(), Rgb(0.0F));
     const auto isDark = [](const auto& light) { return light.x + light.y + light.z == 0; };
     if (std::all_of(direct.begin(), direct.end(), isDark))
         return {std::vector(static_cast<std::size_t>(1 + bounces), direct)}; // lamps that nothing sees
-    const SolverProblem problem(mesh, std::move(direct));
+    const std::vector<Rgb> nothing(mesh.size(), Rgb(0.0F));
+    PatchViews reflecting(mesh, optics);
+    reflecting.emittedRadiosity = nothing;
+    const SolverProblem problem(reflecting, std::move(direct));
     TransportOptions options;
     options.method = TransportMethod::LocalLines;
     options.lines = lines;
@@ -131,29 +133,33 @@ RadiosityReference::RadiosityReference(const MeshedScene& scene, const Reference
         if (options.onStage) options.onStage(what);
     };
     const RayCaster& rays = *scene.rays;
+    const auto addLevel = [&](PatchMesh mesh) {
+        PatchOptics optics = patchOptics(*scene.scene, mesh);
+        levels_.push_back({std::move(mesh), std::move(optics), {}});
+    };
     progress.begin("mesh", 0);
     PatchMesh coarse = buildPatchMesh(*scene.scene, scaledMesh(scene, options.mesh, 2.0), progress);
-    if (refinement(coarse, scene.mesh) >= kLeastRefinement) levels_.push_back({std::move(coarse), {}});
-    levels_.push_back({scene.mesh, {}});
+    if (refinement(coarse, scene.mesh) >= kLeastRefinement) addLevel(std::move(coarse));
+    levels_.push_back({scene.mesh, scene.optics, {}});
     PatchMesh fine = buildPatchMesh(*scene.scene, scaledMesh(scene, options.mesh, 0.5), progress);
     progress.end();
-    if (fine.size() > scene.mesh.size()) levels_.push_back({std::move(fine), {}});
+    if (fine.size() > scene.mesh.size()) addLevel(std::move(fine));
 
     const double perPatch = options.lines / static_cast<double>(levels_.back().mesh.size());
     lines_ =
         static_cast<std::uint32_t>(std::exp2(std::floor(std::log2(std::clamp(perPatch, kFewestLines, kMostLines)))));
     std::uint32_t set = 0;
-    const auto solution = [&](const PatchMesh& mesh, std::uint32_t lines) {
-        tell(fmt::format("reference, {} patches, {} lines", mesh.size(), lines));
-        const auto key = philox({set++, 0, 0, 0x52454652}, options.seed);
-        return solved(mesh, rays, lines, options.bounces, std::uint64_t{key[0]} << 32 | key[1], progress);
+    const auto solution = [&](const Level& level, std::uint32_t lines) {
+        tell(fmt::format("reference, {} patches, {} lines", level.mesh.size(), lines));
+        return solved(level.mesh, level.optics, rays, lines, options.bounces,
+                      randomKey({set++, 0, 0, 0x52454652}, options.seed), progress);
     };
     for (Level& level : levels_) {
-        Solved found = solution(level.mesh, lines_);
+        Solved found = solution(level, lines_);
         level.irradiance = std::move(found.irradiance);
         if (std::abs(found.imbalance) > std::abs(imbalance_)) imbalance_ = found.imbalance;
     }
-    fewerLines_ = solution(levels_.back().mesh, static_cast<std::uint32_t>(lines_ / kLineRatio)).irradiance;
+    fewerLines_ = solution(levels_.back(), static_cast<std::uint32_t>(lines_ / kLineRatio)).irradiance;
 }
 
 std::vector<std::size_t> RadiosityReference::patches() const {
@@ -165,8 +171,8 @@ std::vector<std::size_t> RadiosityReference::patches() const {
 ReferenceLight RadiosityReference::at(std::span<const Receiver> receivers, std::span<const double> weight,
                                       const PointGatherOptions& options, Progress& progress) const {
     std::vector<PatchLight> lights;
-    for (const Level& level : levels_) lights.push_back({&level.mesh, level.irradiance[0]});
-    lights.push_back({&levels_.back().mesh, fewerLines_[0]});
+    for (const Level& level : levels_) lights.push_back({&level.mesh, &level.optics, level.irradiance[0]});
+    lights.push_back({&levels_.back().mesh, &levels_.back().optics, fewerLines_[0]});
     PointGatherOptions other = options;
     other.seed = ~options.seed;
     return extrapolated({gatherAtPoints(*scene_.rays, lights, receivers, options, progress),
@@ -187,7 +193,8 @@ std::vector<ReferenceLight> RadiosityReference::byBounce(std::span<const Receive
         for (std::size_t k = 0; k <= levels_.size(); ++k) {
             const bool fewer = k == levels_.size();
             const Level& level = fewer ? levels_.back() : levels_[k];
-            lights.push_back({&level.mesh, bounce == 0 ? dark[k] : (fewer ? fewerLines_ : level.irradiance)[bounce]});
+            lights.push_back(
+                {&level.mesh, &level.optics, bounce == 0 ? dark[k] : (fewer ? fewerLines_ : level.irradiance)[bounce]});
         }
     }
     PointGatherOptions other = options;

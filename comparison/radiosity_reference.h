@@ -1,8 +1,8 @@
 #pragma once
 
-#include "baking/mesh_scene.h"
 #include "comparison/compared_points.h"
 #include "comparison/point_gather.h"
+#include "meshing/mesh_scene.h"
 
 #include <cstdint>
 #include <functional>
@@ -64,6 +64,7 @@ private:
     using Field = std::vector<RgbSum>;
     struct Level {
         PatchMesh mesh;
+        PatchOptics optics;
         std::vector<Field> irradiance; ///< [0] of all light, [1 + k] of light that was reflected k times
     };
     /// Gathered from [0] of all meshes (or [1 + k]) and from the finest with fewer lines, with two sets of rays.

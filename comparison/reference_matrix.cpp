@@ -6,6 +6,7 @@
 #include "core/random.h"
 #include "formfactors/closed_form.h"
 #include "formfactors/matrix_file.h"
+#include "formfactors/matrix_source.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -18,7 +19,6 @@ namespace lambert {
 namespace {
 
 constexpr double kConvexTolerance = 1e-5; ///< of the scene's size
-constexpr double kAreaTolerance = 1e-3;   ///< relative, between a file's patches and the mesh's
 
 /// Of the closed form where nothing is exact, in partly hidden factors: a tenth of the best that is compared.
 constexpr double kReferenceError = 1e-4;
@@ -56,8 +56,8 @@ ReferenceMatrix byMethod(const ComparedMethod& method, double effort, const Mesh
         return {fmt::format("{}, {}", method.name, effortText(method, effort)),
                 method.compute(scene, effort, seed, MatrixStorage::Double, progress).matrix, effort};
     const auto half = [&](std::uint32_t number) {
-        const auto key = philox({number, 0, 0, 0x52454652}, seed);
-        return method.compute(scene, effort, std::uint64_t{key[0]} << 32 | key[1], MatrixStorage::Double, progress)
+        return method
+            .compute(scene, effort, randomKey({number, 0, 0, 0x52454652}, seed), MatrixStorage::Double, progress)
             .matrix;
     };
     const FormFactorMatrix first = half(0);
@@ -68,20 +68,6 @@ ReferenceMatrix byMethod(const ComparedMethod& method, double effort, const Mesh
     const FormFactorErrors errors = formFactorErrors(first, result.matrix, scene.mesh.area, threshold);
     result.ownError = errors.relativeRms;
     return result;
-}
-
-ReferenceMatrix fromFile(const std::filesystem::path& path, const PatchMesh& mesh) {
-    PatchMatrix file = readMatrix(path);
-    if (file.matrix.size() != mesh.size())
-        throw InputError(fmt::format("{}: found {} patches, the scene has {} with these options", path.string(),
-                                     file.matrix.size(), mesh.size()));
-    for (std::size_t i = 0; i < file.area.size(); ++i) {
-        const auto area = static_cast<double>(mesh.area[i]);
-        if (!(std::abs(file.area[i] - area) <= kAreaTolerance * area))
-            throw InputError(fmt::format("{}: patch {} has {:.6g} m², in the scene {:.6g} m²: it is of another mesh",
-                                         path.string(), i + 1, file.area[i], area));
-    }
-    return {path.filename().string(), std::move(file.matrix), {}};
 }
 
 } // namespace
@@ -142,7 +128,8 @@ FormFactorMatrix unoccludedMatrix(const PatchMesh& mesh, Progress& progress) {
 ReferenceMatrix makeReference(const ReferenceChoice& choice, const MeshedScene& scene, std::uint64_t seed,
                               double threshold, Progress& progress) {
     using Kind = ReferenceChoice::Kind;
-    if (choice.kind == Kind::File) return fromFile(choice.file, scene.mesh);
+    if (choice.kind == Kind::File)
+        return {choice.file.filename().string(), readMatrixOf(scene.mesh, choice.file, MatrixStorage::Double), {}};
     if (choice.kind == Kind::Method) return byMethod(*choice.method, choice.effort, scene, seed, threshold, progress);
     if (isConvex(*scene.scene))
         return {"exact (closed form of every pair)", unoccludedMatrix(scene.mesh, progress), 0.0};

@@ -1,11 +1,11 @@
 #include "comparison/vpl_page.h"
 
-#include "comparison/figure_text.h"
-#include "comparison/html_page.h"
-#include "comparison/page_files.h"
+#include "comparison/page/figure_text.h"
+#include "comparison/page/html_page.h"
+#include "comparison/page/page_files.h"
+#include "comparison/page/scale_bar.h"
+#include "comparison/page/share_bars.h"
 #include "comparison/patch_picture.h"
-#include "comparison/scale_bar.h"
-#include "comparison/share_bars.h"
 #include "comparison/vpl_plots.h"
 
 #include <fmt/format.h>
@@ -56,8 +56,7 @@ public:
         plots();
         details();
         reading();
-        files_.files.insert(files_.files.begin(), {"index.html", page_.text()});
-        return std::move(files_.files);
+        return files_.with(page_);
     }
 
 private:
@@ -179,8 +178,8 @@ private:
                  percentText(part.rmsWithout / mean_), part.approximation.used, part.approximation.instead});
         }
         bars.back().rest = true;
-        const std::string svg = shareBarsSvg(bars, "shares of the squared error");
-        files_.files.push_back({"anatomy_" + method.method->name() + ".svg", svg});
+        const std::string svg =
+            files_.drawing("anatomy_" + method.method->name(), shareBarsSvg(bars, "shares of the squared error"));
         page_.figures({{"Share of the squared error", svg,
                         "Thin lines: one standard error over the seeds; of what is left also the most that the error "
                         "of the reference can add."}},

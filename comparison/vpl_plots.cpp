@@ -1,6 +1,6 @@
 #include "comparison/vpl_plots.h"
 
-#include "comparison/figure_text.h"
+#include "comparison/page/figure_text.h"
 #include "comparison/vpl_report.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ CaptionedPlot errorOverCost(const VplComparison& comparison, bool overSeconds) {
             noise.points.push_back({x, rung.sampling / mean, rung.sampling / mean, rung.sampling / mean});
         }
         plot.curves.push_back(std::move(error));
-        if (method.method->isRandom()) plot.curves.push_back(std::move(noise));
+        if (method.method->seeds(2) > 1) plot.curves.push_back(std::move(noise));
     }
     const double own = comparison.reference.rms.total() / mean;
     plot.levels.push_back({"the reference's own error, " + percentText(own), own});

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "comparison/compare_vpl.h"
-#include "comparison/plot.h"
+#include "comparison/page/plot.h"
 
 #include <vector>
 

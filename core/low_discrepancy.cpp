@@ -119,11 +119,6 @@ double scrambledHalton(std::uint64_t index, std::uint32_t dimension, std::uint64
     return (static_cast<double>(mirrored) + 0.5) / static_cast<double>(scale);
 }
 
-double hammersley(std::uint64_t index, std::uint64_t count, std::uint32_t dimension) {
-    if (dimension == 0) return static_cast<double>(index) / static_cast<double>(count);
-    return halton(index, dimension - 1);
-}
-
 std::uint32_t sobol(std::uint32_t index, std::uint32_t dimension) {
     static const auto matrices = sobolMatrices();
     assert(dimension < kSobolDimensions);

@@ -23,9 +23,6 @@ double halton(std::uint64_t index, std::uint32_t dimension);
 /// becomes uniform in [0, 1), the set keeps its discrepancy. Equal seeds give equal points.
 double scrambledHalton(std::uint64_t index, std::uint32_t dimension, std::uint64_t seed);
 
-/// Coordinate `dimension` of the point `index` of `count` of the Hammersley set: (index / count, Halton...).
-double hammersley(std::uint64_t index, std::uint64_t count, std::uint32_t dimension);
-
 /// Coordinate `dimension` < kSobolDimensions of the Sobol sequence, as 32 bits after the point. Any 2^m successive points
 /// that begin at a multiple of 2^m are stratified in every dimension, and in dimensions 0 and 1 together.
 /// S. Joe, F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 2008.

@@ -24,6 +24,12 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
     return counter;
 }
 
+/// 64 random bits: the key of numbers of their own.
+inline std::uint64_t randomKey(const std::array<std::uint32_t, 4>& counter, std::uint64_t key) {
+    const auto bits = philox(counter, key);
+    return (std::uint64_t{bits[0]} << 32) | bits[1];
+}
+
 /// Maps 32 random bits to a float in [0, 1).
 inline float uniformFloat(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24F; }
 

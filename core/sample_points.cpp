@@ -19,8 +19,7 @@ constexpr std::uint32_t kStream = 0x53414D50;
 
 /// 53 random bits of a point's coordinate.
 double randomNumber(std::uint32_t index, std::uint32_t dimension, std::uint64_t seed) {
-    const auto bits = philox({index, dimension, 0, kStream}, seed);
-    return static_cast<double>(((std::uint64_t{bits[0]} << 32) | bits[1]) >> 11) * 0x1p-53;
+    return static_cast<double>(randomKey({index, dimension, 0, kStream}, seed) >> 11) * 0x1p-53;
 }
 
 LAMBERT_VECTOR_CLONES
@@ -62,8 +61,7 @@ SamplePoints::SamplePoints(Sampler sampler, std::uint32_t count, std::uint32_t d
     : sampler_(sampler), count_(count), seed_(seed) {
     assert(count >= 1 && dimensions <= kSobolDimensions);
     for (std::uint32_t d = 0; d < dimensions; ++d) {
-        const auto key = philox({d, 0, 0, 0x4B455953}, seed);
-        keys_.push_back((std::uint64_t{key[0]} << 32) | key[1]);
+        keys_.push_back(randomKey({d, 0, 0, 0x4B455953}, seed));
     }
 }
 

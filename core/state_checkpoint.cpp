@@ -20,21 +20,22 @@ std::uint64_t checksumOf(std::string_view bytes) {
 
 } // namespace
 
-void StateCheckpoint::check(const CheckpointOptions& options) {
+const std::filesystem::path& StateCheckpoint::check(const CheckpointOptions& options) {
     std::error_code ignored;
     if (std::filesystem::exists(options.path, ignored) && !options.resume)
         throw UsageError(fmt::format("--checkpoint: {} is there already; go on with it by --resume, or remove it",
                                      options.path.string()));
     requireWritable(options.path);
+    return options.path;
 }
 
 StateCheckpoint::StateCheckpoint(const CheckpointOptions& options, std::string kind, std::string identity)
-    : path_(options.path),
+    : path_(check(options)),
+      lock_(path_),
       kind_(std::move(kind)),
       identity_(std::move(identity)),
       interval_(options.seconds),
       next_(options.seconds) {
-    check(options);
     std::ifstream file(path_, std::ios::binary);
     if (!file) return;
     std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
@@ -58,7 +59,7 @@ StateCheckpoint::StateCheckpoint(const CheckpointOptions& options, std::string k
     restored_ = bytes.substr(expected.size());
 }
 
-std::string StateCheckpoint::begin() const { return fmt::format("Lambert {} checkpoint 1: {}\n", kind_, identity_); }
+std::string StateCheckpoint::begin() const { return fmt::format("Lambert {} checkpoint 2: {}\n", kind_, identity_); }
 
 void StateCheckpoint::write(std::string bytes) const {
     const std::uint64_t sum = checksumOf(bytes);

@@ -2,6 +2,7 @@
 
 #include "core/checkpoint.h"
 #include "core/error.h"
+#include "core/locked_file.h"
 #include "core/stopwatch.h"
 
 #include <cstddef>
@@ -81,18 +82,19 @@ private:
 };
 
 /// The state of unfinished work in a file, replaced as a whole now and then: what was written stays valid whatever
-/// happens to the process. It is that of the machine it was written on (order of bytes, layout of numbers).
+/// happens to the process. It is that of the machine it was written on (order of bytes, layout of numbers). While it is in
+/// use, a file beside it, of its name and ".lock", is there and locked.
 ///
 /// A state is a function that passes all that is needed to go on, in a fixed order, to what it is called with: a
 /// StateWriter or a StateReader.
 class StateCheckpoint {
 public:
     /// `kind` names the work, as "solver"; `identity`, one line, all that it depends on. Throws UsageError if the file is there without
-    /// `resume` or is another work's, InputError if it is damaged, SystemError if it cannot be written.
+    /// `resume`, in use by another run or another work's, InputError if it is damaged, SystemError if it cannot be written.
     StateCheckpoint(const CheckpointOptions& options, std::string kind, std::string identity);
 
-    /// The part of the above that needs no identity: to be called before hours of work.
-    static void check(const CheckpointOptions& options);
+    /// The part of the above that needs neither identity nor lock: to be called before hours of work. Returns the path.
+    static const std::filesystem::path& check(const CheckpointOptions& options);
 
     /// Whether there was a state, which then is set.
     template <typename State>
@@ -125,10 +127,17 @@ public:
     void remove();
 
 private:
+    /// Of the file beside, as the one with the state is replaced time and again.
+    struct Lock : LockedFile {
+        explicit Lock(const std::filesystem::path& path) : LockedFile(path.string() + ".lock", path) {}
+        ~Lock() { remove(); }
+    };
+
     std::string begin() const;
     void write(std::string bytes) const;
 
     std::filesystem::path path_;
+    Lock lock_;
     std::string kind_, identity_;
     double interval_, next_;
     std::string restored_; ///< empty: none, or taken

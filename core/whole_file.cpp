@@ -12,6 +12,7 @@
 #include <deque>
 #include <fstream>
 #include <optional>
+#include <random>
 
 namespace lambert {
 
@@ -44,8 +45,8 @@ public:
     bool usable() const { return descriptor_ >= 0 && ::access(path_.c_str(), W_OK) == 0; }
     /// Under which this process can open it.
     const fs::path& path() const { return path_; }
+    /// False, with errno set, if there is a file of that name.
     bool giveName(const fs::path& name) const {
-        ::unlink(name.c_str()); // of a killed process with this one's number
         return ::linkat(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
     }
 
@@ -57,30 +58,31 @@ private:
 /// A new content on its way to replace a file: removed again unless committed.
 class Replacement {
 public:
-    /// `number` tells apart what one process replaces at one time. The temporary name is short, as the target's own name may
-    /// be as long as a name can be.
-    Replacement(const fs::path& path, std::size_t number)
-        : path_(path),
-          number_(number),
-          temporary_(path.parent_path() / fmt::format(".lambert-{}-{}.tmp", ::getpid(), number)) {}
+    explicit Replacement(const fs::path& path) : path_(path) {}
     ~Replacement() {
         std::error_code ignored;
-        if (!committed_) fs::remove(temporary_, ignored);
+        if (!temporary_.empty()) fs::remove(temporary_, ignored);
     }
     Replacement(const Replacement&) = delete;
     Replacement& operator=(const Replacement&) = delete;
 
-    void write(const std::function<void(std::ostream&)>& content) {
-        if (number_ < kMostNameless && !nameless_.emplace(path_.parent_path()).usable()) nameless_.reset();
+    /// To a file without a name, if wanted and possible.
+    void write(const std::function<void(std::ostream&)>& content, bool nameless) {
+        if (nameless && !nameless_.emplace(path_.parent_path()).usable()) nameless_.reset();
+        if (!nameless_)
+            takeName([](const fs::path& name) {
+                const int file = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+                return file >= 0 && ::close(file) == 0;
+            });
         writeTo(nameless_ ? nameless_->path() : temporary_, content);
     }
 
-    void write(std::string_view content) {
-        write([&](std::ostream& file) { writePiece(file, content); });
+    void write(std::string_view content, bool nameless) {
+        write([&](std::ostream& file) { writePiece(file, content); }, nameless);
     }
 
     void giveName() {
-        if (nameless_ && !nameless_->giveName(temporary_)) fail(path_, errno);
+        if (nameless_) takeName([&](const fs::path& name) { return nameless_->giveName(name); });
         nameless_.reset();
     }
 
@@ -88,10 +90,25 @@ public:
         std::error_code error;
         fs::rename(temporary_, path_, error);
         if (error) fail(path_, error.value());
-        committed_ = true;
+        temporary_.clear();
     }
 
 private:
+    /// `create` makes a file of a name that none has, whoever else writes to this folder: numbers of processes recur on machines
+    /// that share it. The name is short, as the target's own may be as long as a name can be.
+    template <typename Create>
+    void takeName(const Create& create) {
+        for (;;) {
+            std::random_device random;
+            const fs::path name = path_.parent_path() / fmt::format(".lambert-{:08x}{:08x}.tmp", random(), random());
+            if (create(name)) {
+                temporary_ = name;
+                return;
+            }
+            if (errno != EEXIST) fail(path_, errno);
+        }
+    }
+
     /// Until it is on the disk.
     void writeTo(const fs::path& target, const std::function<void(std::ostream&)>& content) const {
         errno = 0;
@@ -109,17 +126,18 @@ private:
     }
 
     fs::path path_;
-    std::size_t number_;
-    fs::path temporary_;
+    fs::path temporary_; ///< empty: none
     std::optional<NamelessFile> nameless_;
-    bool committed_ = false;
 };
 
 /// All or none. A name is given and taken when everything is on the disk: a moment, whatever the sizes.
 template <class File>
 void writeAll(std::span<const File> files) {
     std::deque<Replacement> replacements;
-    for (const File& file : files) replacements.emplace_back(file.path, replacements.size()).write(file.content);
+    for (const File& file : files) {
+        const bool nameless = replacements.size() < kMostNameless;
+        replacements.emplace_back(file.path).write(file.content, nameless);
+    }
     for (Replacement& replacement : replacements) replacement.giveName();
     for (Replacement& replacement : replacements) replacement.commit();
 }

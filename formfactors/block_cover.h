@@ -1,7 +1,7 @@
 #pragma once
 
 #include "formfactors/hemicube_face.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <glm/vec3.hpp>
 

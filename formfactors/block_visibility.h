@@ -5,7 +5,7 @@
 #include "formfactors/occluders.h"
 #include "formfactors/patch_blocks.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <cstdint>
 #include <span>

@@ -257,8 +257,4 @@ double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3
     return std::max(0.0, sum / (2.0 * std::numbers::pi));
 }
 
-double polygonToPolygon(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to) {
-    return exchangeArea(from, to) / glm::length(polygonAreaVector(from));
-}
-
 } // namespace lambert

@@ -34,7 +34,4 @@ enum class Care {
 /// A_from · F_from,to, in m²: the same in both directions.
 double exchangeArea(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to, Care care = Care::Full);
 
-/// F_from,to: the fraction of what leaves the front of one polygon that reaches the front of the other.
-double polygonToPolygon(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
-
 } // namespace lambert

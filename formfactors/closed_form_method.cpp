@@ -151,7 +151,7 @@ private:
         const FacingParts parts = facingParts(to, front);
         if (parts.from.empty() || parts.to.empty()) return;
         const bool occluded = stack_.size() > firstOccluder;
-        double value = convexExchange(parts.from, from_.plane, parts.to, parts.toPlane);
+        double value = convexExchange(parts.from, from_.plane, parts.to, parts.toPlane, scratch_.exchange);
         if (value > 0.0 && occluded) value = visiblePart(parts, value, firstOccluder);
         add(to, front, value);
     }
@@ -173,7 +173,7 @@ private:
         if (occluders_.empty()) return unoccluded;
         if (std::any_of(occluders_.begin(), occluders_.end(), [](const Occluder* o) { return o->holes; }))
             return unoccluded * visibleShare(parts);
-        return visibleExchange(pair, unoccluded, method_.options_.error);
+        return visibleExchange(pair, unoccluded, method_.options_.error, scratch_);
     }
 
     /// The share that rays let through, between Gauss points of both.
@@ -209,6 +209,7 @@ private:
     std::array<std::vector<WeightedPoint>, PatchClusters::kHighestOrder> points_;
     std::vector<const Occluder*> stack_;
     std::vector<const Occluder*> occluders_;
+    VisibleExchangeScratch scratch_;
 };
 
 ClosedForm::ClosedForm(const PatchMesh& mesh, const RayCaster& rays, const ClosedFormOptions& options)

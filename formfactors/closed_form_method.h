@@ -4,7 +4,7 @@
 #include "formfactors/occluders.h"
 #include "formfactors/patch_clusters.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <vector>
 

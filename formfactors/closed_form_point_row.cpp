@@ -78,10 +78,10 @@ private:
         return here > 0.0 ? there[0] < -t : there[1] > t;
     }
 
-    double visibleFactor(const ConvexPolygon& polygon, const glm::dvec3& facing) const {
+    double visibleFactor(const ConvexPolygon& polygon, const glm::dvec3& facing) {
         if (std::any_of(occluders_.begin(), occluders_.end(), [](const Occluder* o) { return o->holes; }))
             return pointToVisiblePolygon(point_, horizon_.normal, polygon.points()) * visibleShare(polygon, facing);
-        return VisibleParts(point_, polygon, occluders_, method_.tolerance_).formFactor(horizon_.normal);
+        return VisibleParts(point_, polygon, occluders_, method_.tolerance_, scratch_).formFactor(horizon_.normal);
     }
 
     /// The share that rays let through, to Gauss points of a polygon that faces the point.
@@ -130,6 +130,7 @@ private:
     Extents extents_;
     std::vector<const Occluder*> stack_;
     std::vector<const Occluder*> occluders_; ///< of the target at hand
+    VisibleParts::Scratch scratch_;
 };
 
 void ClosedForm::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t,

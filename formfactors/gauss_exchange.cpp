@@ -70,19 +70,18 @@ std::array<double, kLanes> exchangeWithCluster(std::span<const WeightedPoint> fr
 }
 
 double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
-                      Care care) {
+                      ExchangeScratch& scratch, Care care) {
     const glm::dvec3 centreFrom = from.centre(), centreTo = to.centre();
     const double reach = radius(from, centreFrom) + radius(to, centreTo);
     const int order = gaussOrder(reach / glm::distance(centreFrom, centreTo));
     if (order == 0) return exchangeArea(from.points(), to.points(), care);
-    static thread_local std::vector<WeightedPoint> pointsFrom, pointsTo;
-    pointsFrom.clear();
-    pointsTo.clear();
-    appendGaussPoints(from.points(), order, pointsFrom);
-    appendGaussPoints(to.points(), order, pointsTo);
+    scratch.from.clear();
+    scratch.to.clear();
+    appendGaussPoints(from.points(), order, scratch.from);
+    appendGaussPoints(to.points(), order, scratch.to);
     double sum = 0.0;
-    for (const auto& [x, weightX] : pointsFrom) {
-        for (const auto& [y, weightY] : pointsTo) {
+    for (const auto& [x, weightX] : scratch.from) {
+        for (const auto& [y, weightY] : scratch.to) {
             const glm::dvec3 d = y - x;
             const double squared = glm::dot(d, d);
             sum -=

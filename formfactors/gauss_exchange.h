@@ -7,6 +7,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace lambert {
 
@@ -21,9 +22,14 @@ std::array<double, PatchClusters::kLanes> exchangeWithCluster(std::span<const We
                                                               const glm::dvec3& normal,
                                                               const PatchClusters::Cluster& cluster, int order);
 
+/// Points of rules over two polygons; keeps its memory from call to call.
+struct ExchangeScratch {
+    std::vector<WeightedPoint> from, to;
+};
+
 /// A_from · F_from,to in m² of two convex polygons that lie in front of each other's planes and that nothing stands between:
 /// by Gauss's rule, or by the contour integral where they are close.
 double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
-                      Care care = Care::Single);
+                      ExchangeScratch& scratch, Care care = Care::Single);
 
 } // namespace lambert

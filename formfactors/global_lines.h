@@ -4,7 +4,7 @@
 #include "formfactors/isotropic_lines.h"
 #include "formfactors/line_spans.h"
 #include "meshing/patch_mesh.h"
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 
 #include <functional>
 

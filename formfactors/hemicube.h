@@ -4,7 +4,7 @@
 #include "formfactors/hemicube_face.h"
 #include "formfactors/viewpoints.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <array>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "formfactors/form_factor_method.h"
 #include "formfactors/viewpoints.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <vector>
 

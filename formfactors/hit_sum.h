@@ -2,7 +2,7 @@
 
 #include "formfactors/form_factor_method.h"
 #include "meshing/patch_lookup.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 namespace lambert {
 

@@ -177,8 +177,8 @@ void IsotropicLines::makeChords(std::uint32_t first, std::uint32_t count, Block&
 }
 
 void IsotropicLines::makeBundle(std::uint32_t bundle, std::uint32_t count, Block& result) const {
-    const auto key = philox({bundle, 0, 0, 0x42554E44}, options_.seed);
-    const SamplePoints pattern(options_.sampler, options_.linesPerBundle, 2, (std::uint64_t{key[0]} << 32) | key[1]);
+    const SamplePoints pattern(options_.sampler, options_.linesPerBundle, 2,
+                               randomKey({bundle, 0, 0, 0x42554E44}, options_.seed));
     result.points.resize(std::size_t{2} * count);
     for (std::uint32_t d = 0; d < 2; ++d)
         pattern.fill(0, d, std::span(result.points).subspan(std::size_t{d} * count, count));

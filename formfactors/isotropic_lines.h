@@ -2,7 +2,7 @@
 
 #include "core/sample_points.h"
 #include "formfactors/cell_sorter.h"
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "meshing/patch_mesh.h"
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 
 #include <algorithm>
 #include <cstdint>

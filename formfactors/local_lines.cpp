@@ -54,8 +54,7 @@ void makeDirections(const float* points, std::uint32_t count, const OrthonormalB
 
 /// Of the lines of one patch or point; `kind` tells these apart.
 std::uint64_t seedOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
-    const auto key = philox({index, 0, 0, kind}, seed);
-    return (std::uint64_t{key[0]} << 32) | key[1];
+    return randomKey({index, 0, 0, kind}, seed);
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 #include "formfactors/cell_sorter.h"
 #include "formfactors/form_factor_method.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <span>
 #include <vector>

@@ -2,18 +2,15 @@
 
 #include "core/checksum.h"
 #include "core/error.h"
-#include "core/whole_file.h"
+#include "core/state_checkpoint.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-#include <utility>
 
 namespace lambert {
 
@@ -53,30 +50,17 @@ bool readAt(int file, void* target, std::size_t bytes, std::uint64_t place) {
 } // namespace
 
 MatrixJournal::MatrixJournal(const CheckpointOptions& options, const std::string& identity)
-    : path_(options.path), interval_(options.seconds), nextWrite_(options.seconds) {
-    std::error_code ignored;
-    if (std::filesystem::exists(path_, ignored) && !options.resume)
-        throw UsageError(
-            fmt::format("--checkpoint: {} is there already; go on with it by --resume, or remove it", path_.string()));
-    requireWritable(path_);
-    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file_ < 0) fail(errno);
-    try {
-        if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
-            throw UsageError(fmt::format("--checkpoint: {} is in use by another run", path_.string()));
-        struct stat status {};
-        if (::fstat(file_, &status) != 0) fail(errno);
-        if (status.st_size == 0)
-            writeHeader(identity);
-        else
-            readHeader(identity);
-    } catch (...) {
-        ::close(file_);
-        throw;
-    }
+    : path_(StateCheckpoint::check(options)),
+      interval_(options.seconds),
+      file_(path_, path_),
+      nextWrite_(options.seconds) {
+    struct stat status {};
+    if (::fstat(file_.descriptor(), &status) != 0) fail(errno);
+    if (status.st_size == 0)
+        writeHeader(identity);
+    else
+        readHeader(identity);
 }
-
-MatrixJournal::~MatrixJournal() { ::close(file_); }
 
 void MatrixJournal::fail(int error) const {
     throw SystemError(fmt::format("{}: cannot write the checkpoint: {}", path_.string(), std::strerror(error)));
@@ -91,12 +75,12 @@ void MatrixJournal::writeHeader(const std::string& identity) {
 
 void MatrixJournal::readHeader(const std::string& identity) {
     std::string header(kLongestHeader, '\0');
-    const ssize_t got = ::pread(file_, header.data(), header.size(), 0);
+    const ssize_t got = ::pread(file_.descriptor(), header.data(), header.size(), 0);
     if (got < 0) fail(errno);
     header.resize(static_cast<std::size_t>(got));
     const std::string expected = fmt::format("{}{}\n", kMagic, identity);
     if (expected.starts_with(header)) { // the process died while it wrote this
-        if (::ftruncate(file_, 0) != 0) fail(errno);
+        if (::ftruncate(file_.descriptor(), 0) != 0) fail(errno);
         writeHeader(identity);
         return;
     }
@@ -116,16 +100,17 @@ std::vector<bool> MatrixJournal::restore(FormFactorMatrix& matrix) {
     std::vector<bool> restored(matrix.size(), false);
     std::vector<std::byte> row;
     std::uint64_t place = firstRow_;
-    for (RecordHeader header{}; readAt(file_, &header, sizeof header, place);) {
+    for (RecordHeader header{}; readAt(file_.descriptor(), &header, sizeof header, place);) {
         if (header.patch >= matrix.size() || header.bytes > 16 * matrix.size() + 64) break;
         row.resize(header.bytes);
-        if (!readAt(file_, row.data(), row.size(), place + sizeof header)) break;
+        if (!readAt(file_.descriptor(), row.data(), row.size(), place + sizeof header)) break;
         if (header.checksum != checksumOf(header.patch, row) || !matrix.setBytes(header.patch, row)) break;
         if (!restored[header.patch]) ++restored_;
         restored[header.patch] = true;
         place += sizeof header + row.size();
     }
-    if (::ftruncate(file_, static_cast<off_t>(place)) != 0 || ::lseek(file_, 0, SEEK_END) < 0) fail(errno);
+    if (::ftruncate(file_.descriptor(), static_cast<off_t>(place)) != 0 || ::lseek(file_.descriptor(), 0, SEEK_END) < 0)
+        fail(errno);
     return restored;
 }
 
@@ -161,23 +146,18 @@ void MatrixJournal::flush(const FormFactorMatrix& matrix) {
         }
     }
     writeAll(block);
-    if (::fdatasync(file_) != 0) fail(errno);
+    if (::fdatasync(file_.descriptor()) != 0) fail(errno);
 }
 
 void MatrixJournal::writeAll(const std::vector<std::byte>& bytes) {
     const std::byte* at = bytes.data();
     for (std::size_t left = bytes.size(); left > 0;) {
-        const ssize_t written = ::write(file_, at, left);
+        const ssize_t written = ::write(file_.descriptor(), at, left);
         if (written < 0 && errno == EINTR) continue;
         if (written <= 0) fail(written < 0 ? errno : EIO);
         at += written;
         left -= static_cast<std::size_t>(written);
     }
-}
-
-void MatrixJournal::remove() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
 }
 
 } // namespace lambert

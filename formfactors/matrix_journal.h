@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/checkpoint.h"
+#include "core/locked_file.h"
 #include "core/stopwatch.h"
 #include "formfactors/form_factor_matrix.h"
 
@@ -21,11 +22,8 @@ namespace lambert {
 class MatrixJournal {
 public:
     /// Opens or creates the file and locks it. `identity`, one line, names all that the rows depend on. Throws UsageError if
-    /// the file is there without `resume` or is another computation's, SystemError.
+    /// the file is there without `resume`, in use by another run or another computation's, SystemError.
     MatrixJournal(const CheckpointOptions& options, const std::string& identity);
-    ~MatrixJournal();
-    MatrixJournal(const MatrixJournal&) = delete;
-    MatrixJournal& operator=(const MatrixJournal&) = delete;
 
     /// Puts the rows of the file into the matrix; which they are, #patches. To be called once, before anything is added.
     /// Throws SystemError.
@@ -37,7 +35,7 @@ public:
     /// Writes all that is new and waits until it is on the disk. Throws SystemError.
     void flush(const FormFactorMatrix& matrix);
     /// Removes the file: the work is done.
-    void remove();
+    void remove() { file_.remove(); }
 
 private:
     [[noreturn]] void fail(int error) const;
@@ -47,7 +45,7 @@ private:
 
     std::filesystem::path path_;
     double interval_;
-    int file_ = -1;
+    LockedFile file_;
     std::uint64_t firstRow_ = 0; ///< where in the file
     std::size_t restored_ = 0;
 

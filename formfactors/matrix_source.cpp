@@ -25,6 +25,16 @@ void addMaterial(Checksum& sum, const Material& material) {
     sum.add(static_cast<std::uint64_t>(std::lround(1e6F * material.opacityCutoff)));
 }
 
+/// Throws InputError.
+void requireClosure(const FormFactorMatrix& matrix, const std::filesystem::path& path) {
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        const double sum = matrix.row(i).sum();
+        if (!(std::abs(sum - 1.0) <= kClosureTolerance))
+            throw InputError(
+                fmt::format("{}: row {} and its F_back and F_out sum to {:.6g}, not to 1", path.string(), i + 1, sum));
+    }
+}
+
 /// Repair works on more than the matrix.
 void requireRoomForRepair(const FormFactorMatrix& matrix, const TransportOptions& transport) {
     const double bytes = kRepairBytes * static_cast<double>(matrix.entryCount()) + static_cast<double>(matrix.bytes());
@@ -54,8 +64,6 @@ std::uint64_t sceneChecksum(const PatchMesh& mesh, const Scene& scene) {
     sum.add(mesh.positions);
     sum.add(mesh.corners);
     sum.add(mesh.area);
-    sum.add(mesh.reflectance);
-    sum.add(mesh.emittedRadiosity);
     return sum.value();
 }
 
@@ -69,9 +77,8 @@ std::string matrixIdentity(const TransportPlan& plan, const PatchMesh& mesh, con
                               o.storage ? nameOf(*o.storage) : "not stored", mesh.size(), sceneChecksum(mesh, scene));
 }
 
-FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,
-                              const TransportOptions& transport) {
-    PatchMatrix read = readMatrix(path, transport.storage.value_or(MatrixStorage::Double));
+FormFactorMatrix readMatrixOf(const PatchMesh& mesh, const std::filesystem::path& path, MatrixStorage storage) {
+    PatchMatrix read = readMatrix(path, storage);
     const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", path.string(), what)); };
     if (read.matrix.size() != mesh.size())
         fail(fmt::format("found a matrix of {} patches, the scene has {}; mesh options such as --patches must be those "
@@ -83,29 +90,26 @@ FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh
             fail(fmt::format("patch {} has {:.6g} m², in the scene it has {:.6g}: the matrix is of another mesh", i + 1,
                              read.area[i], area));
     }
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
-        const double sum = read.matrix.row(i).sum();
-        if (!(std::abs(sum - 1.0) <= kClosureTolerance))
-            fail(fmt::format("row {} and its F_back and F_out sum to {:.6g}, not to 1", i + 1, sum));
-    }
     return std::move(read.matrix);
 }
 
-SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, const RayCaster& rays, Progress& progress) {
+SceneMatrix obtainMatrix(const MatrixSource& source, const CheckpointOptions& checkpoint, const PatchMesh& mesh,
+                         const RayCaster& rays, Progress& progress) {
     SceneMatrix result;
     std::vector<double> weights;
     if (!source.transport.stored) throw UsageError("--storage none: only a solver can do without a matrix");
     if (!source.file.empty()) {
         progress.begin("read form factors", 0);
-        result.matrix = importMatrix(source.file, mesh, source.transport);
+        result.matrix = readMatrixOf(mesh, source.file, source.transport.storage.value_or(MatrixStorage::Double));
+        requireClosure(result.matrix, source.file);
         weights = repairWeights(mesh);
         progress.end();
     } else {
         result.plan = planTransport(source.transport, mesh, rays, progress);
-        if (!source.checkpoint.path.empty())
-            result.checkpoint =
-                std::make_unique<MatrixCheckpoint>(source.checkpoint, result.plan->options.method,
-                                                   matrixIdentity(*result.plan, mesh, rays.scene(), source.version));
+        if (!checkpoint.path.empty())
+            result.checkpoint = std::make_unique<MatrixCheckpoint>(
+                checkpoint, result.plan->options.method,
+                matrixIdentity(*result.plan, mesh, rays.scene(), checkpoint.version));
         TransportMatrix computed = computeMatrix(*result.plan, mesh, rays, progress, result.checkpoint.get());
         result.matrix = std::move(computed.matrix);
         result.plan->rays = computed.rays;

@@ -18,8 +18,6 @@ struct MatrixSource {
     TransportOptions transport;   //!< how they are computed
     std::filesystem::path file{}; //!< or a matrix file that holds them; empty: computed
     bool repair = false;          //!< made reciprocal and closed afterwards, see repair()
-    CheckpointOptions checkpoint{};
-    std::string version{}; //!< of the program, for checkpoints
 };
 
 struct SceneMatrix {
@@ -30,16 +28,16 @@ struct SceneMatrix {
     std::unique_ptr<MatrixCheckpoint> checkpoint; //!< to be removed once what is made of the matrix is on the disk
 };
 
-/// Reads or computes the form factors of a mesh. `rays` are of `rays.scene()`, which the mesh is of. Throws UsageError,
-/// InputError, SystemError, Cancelled.
-SceneMatrix obtainMatrix(const MatrixSource& source, const PatchMesh& mesh, const RayCaster& rays, Progress& progress);
+/// Reads or computes the form factors of a mesh; those of a file, see readMatrixOf, must sum to 1 in each row within 1 %. `rays` are
+/// of `rays.scene()`, which the mesh is of. Throws UsageError, InputError, SystemError, Cancelled.
+SceneMatrix obtainMatrix(const MatrixSource& source, const CheckpointOptions& checkpoint, const PatchMesh& mesh,
+                         const RayCaster& rays, Progress& progress);
 
-/// A matrix file as the form factors of this mesh. Throws InputError unless it has the mesh's number of patches, its areas
-/// if the file has areas, and rows that sum to 1 within 1 %.
-FormFactorMatrix importMatrix(const std::filesystem::path& path, const PatchMesh& mesh,
-                              const TransportOptions& transport);
+/// A matrix file as the form factors of this mesh. Throws InputError unless it has the mesh's number of patches and, if the file has
+/// areas, its areas.
+FormFactorMatrix readMatrixOf(const PatchMesh& mesh, const std::filesystem::path& path, MatrixStorage storage);
 
-/// A check sum of all of a scene and its mesh that rays can tell apart, and what the patches reflect and emit.
+/// A check sum of all of a scene and its mesh that rays can tell apart, and of the materials.
 std::uint64_t sceneChecksum(const PatchMesh& mesh, const Scene& scene);
 
 /// One line that names all that the rows of a planned matrix depend on.

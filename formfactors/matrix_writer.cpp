@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/text.h"
 #include "core/whole_file.h"
 #include "formfactors/matrix_file.h"
 
@@ -186,9 +187,7 @@ MatrixFormat requireFormat(const fs::path& path) {
 } // namespace
 
 std::optional<MatrixFormat> matrixFormatOf(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string extension = lowerCase(path.extension().string());
     constexpr std::array<std::pair<std::string_view, MatrixFormat>, 4> known{{{".mtx", MatrixFormat::MatrixMarket},
                                                                               {".npy", MatrixFormat::NumPy},
                                                                               {".csv", MatrixFormat::Csv},

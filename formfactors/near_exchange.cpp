@@ -22,8 +22,8 @@ double radiusOf(const ConvexPolygon& polygon, const glm::dvec3& centre) {
 }
 
 /// ∫ of what points of one polygon see of the other, in m², by a rule of this order.
-double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, const ConvexPolygon& inner, int order) {
-    thread_local std::vector<WeightedPoint> points;
+double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, const ConvexPolygon& inner, int order,
+                      std::vector<WeightedPoint>& points) {
     points.clear();
     appendGaussPoints(outer.points(), order, points);
     double sum = 0.0;
@@ -33,7 +33,8 @@ double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, cons
 
 } // namespace
 
-double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane) {
+double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
+                    ExchangeScratch& scratch) {
     const glm::dvec3 fromCentre = from.centre(), toCentre = to.centre();
     const double fromRadius = radiusOf(from, fromCentre), toRadius = radiusOf(to, toCentre);
     const bool fromIsSmaller = fromRadius < toRadius;
@@ -44,12 +45,13 @@ double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const Con
     const double gap = (glm::distance(fromCentre, toCentre) - fromRadius - toRadius) / (2.0 * smaller);
     // A rule of order n errs by ρ^(−2n), ρ = 2 gap + √(4 gap² + 1).
     const int order = gap > 1.4 ? 2 : gap > 0.7 ? 3 : 4;
-    const double mean = meanOverPoints(outer, normal, inner, order);
+    const double mean = meanOverPoints(outer, normal, inner, order, scratch.from);
     if (gap > 0.4 || mean < kSmallFactor * smaller * smaller) return mean;
     // Neighbours that share an edge are smooth too, others need the contour integral.
-    const double finer = meanOverPoints(outer, normal, inner, 6);
-    return std::abs(mean - finer) < kAgreement * finer ? finer
-                                                       : convexExchange(from, fromPlane, to, toPlane, Care::Rough);
+    const double finer = meanOverPoints(outer, normal, inner, 6, scratch.from);
+    return std::abs(mean - finer) < kAgreement * finer
+               ? finer
+               : convexExchange(from, fromPlane, to, toPlane, scratch, Care::Rough);
 }
 
 } // namespace lambert

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "formfactors/patch_shape.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <array>
 #include <cstdint>

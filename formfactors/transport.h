@@ -6,7 +6,7 @@
 #include "formfactors/form_factor_method.h"
 #include "formfactors/isotropic_lines.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <cstdint>
 #include <memory>

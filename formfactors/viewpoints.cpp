@@ -22,9 +22,8 @@ Viewpoint viewpoint(const PatchMesh& mesh, const RayCaster& rays, std::uint32_t 
                     bool randomRotation, std::uint64_t seed) {
     glm::vec3 point = mesh.centroid[patch];
     if (count > 1) {
-        const auto key = philox({patch, 0, 0, 0x56494557}, seed);
         const SamplePoints points(Sampler::Stratified, static_cast<std::uint32_t>(count), 2,
-                                  (std::uint64_t{key[0]} << 32) | key[1]);
+                                  randomKey({patch, 0, 0, 0x56494557}, seed));
         const auto k = static_cast<std::uint32_t>(index);
         point = PatchPoints(mesh, patch).at({points.at(k, 0), points.at(k, 1)});
     }

@@ -62,6 +62,7 @@ public:
     struct Scratch {
         std::vector<PairSample> pairs;
         std::vector<ClearPair> clear;
+        ExchangeScratch exchange;
     };
 
     Row(const VisibilitySampling& method, const PatchBlocks::Viewer& viewer, const PatchShape& shape,
@@ -72,7 +73,8 @@ public:
           index_(index),
           patch_(patch),
           pairs_(scratch.pairs),
-          clear_(scratch.clear) {
+          clear_(scratch.clear),
+          exchange_(scratch.exchange) {
         pairs_.clear();
         clear_.clear();
         if (patch_ != kNone) {
@@ -145,7 +147,7 @@ private:
         split(polygon_, toPlane, t, fromPart, behind);
         split(to, plane_, t, toPart, behind);
         if (fromPart.empty() || toPart.empty()) return 0.0;
-        return nearExchange(fromPart, plane_, toPart, toPlane) / area_;
+        return nearExchange(fromPart, plane_, toPart, toPlane, exchange_) / area_;
     }
 
     void traceLines(const std::vector<Ray>& lines) {
@@ -360,7 +362,8 @@ private:
     Plane plane_;
     double area_ = 0.0;              ///< m², holes included
     std::vector<PairSample>& pairs_; ///< whose visibility rays are to find
-    std::vector<ClearPair>& clear_;  ///< what nothing stands before
+    std::vector<ClearPair>& clear_;
+    ExchangeScratch& exchange_; ///< what nothing stands before
     double clearSum_ = 0.0;
     std::uint32_t lines_ = kRemainderLines;
     double lineFront_ = 0.0, lineBack_ = 0.0, lineOut_ = 0.0; ///< shares of the lines

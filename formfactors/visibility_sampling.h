@@ -6,7 +6,7 @@
 #include "formfactors/patch_blocks.h"
 #include "formfactors/patch_shape.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <atomic>
 #include <cstdint>

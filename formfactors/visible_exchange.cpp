@@ -4,9 +4,7 @@
 
 #include "formfactors/blocking.h"
 #include "formfactors/closed_form.h"
-#include "formfactors/gauss_exchange.h"
 #include "formfactors/quadrature.h"
-#include "formfactors/visible_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +174,8 @@ public:
     };
 
     /// `error` aimed at in each cell, m².
-    CellIntegral(const OccludedPair& pair, double error) : pair_(pair), error_(error) {}
+    CellIntegral(const OccludedPair& pair, double error, VisibleExchangeScratch& scratch)
+        : pair_(pair), error_(error), scratch_(scratch) {}
 
     /// Of all of `from`, cut along the lines where the visible part changes its shape.
     double whole() const {
@@ -201,17 +200,17 @@ public:
 
     /// By Gauss's rule over the cell, with the visible part of the target found at each point.
     double byRule(const Cell& cell, int order) const {
-        static thread_local std::vector<WeightedPoint> points;
-        points.clear();
-        appendGaussPoints(cell.polygon.points(), order, points);
+        scratch_.points.clear();
+        appendGaussPoints(cell.polygon.points(), order, scratch_.points);
         double sum = 0.0;
-        for (const auto& [x, weight] : points) sum += weight * visibleFrom(x, cell).formFactor(pair_.fromPlane.normal);
+        for (const auto& [x, weight] : scratch_.points)
+            sum += weight * visibleFrom(x, cell).formFactor(pair_.fromPlane.normal);
         return sum;
     }
 
 private:
     VisibleParts visibleFrom(const glm::dvec3& point, const Cell& cell) const {
-        return {point, pair_.to, cell.occluders, pair_.tolerance};
+        return {point, pair_.to, cell.occluders, pair_.tolerance, scratch_.parts};
     }
 
     /// Leaves the occluders that may hide something from the cell; false if one hides all.
@@ -228,7 +227,7 @@ private:
     }
 
     double free(const Cell& cell) const {
-        return convexExchange(cell.polygon, pair_.fromPlane, pair_.to, pair_.toPlane);
+        return convexExchange(cell.polygon, pair_.fromPlane, pair_.to, pair_.toPlane, scratch_.exchange);
     }
 
     /// By three points per axis, or by halves until that agrees with two (`low`).
@@ -251,6 +250,7 @@ private:
 
     const OccludedPair& pair_;
     double error_;
+    VisibleExchangeScratch& scratch_;
 };
 
 } // namespace
@@ -270,10 +270,11 @@ bool dropClearOccluders(OccludedPair& pair) {
     return !hidden;
 }
 
-double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError) {
-    const double estimate = CellIntegral(pair, 0.0).byRule({pair.from, pair.occluders}, 2);
+double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError,
+                       VisibleExchangeScratch& scratch) {
+    const double estimate = CellIntegral(pair, 0.0, scratch).byRule({pair.from, pair.occluders}, 2);
     const double error = relativeError * std::max(estimate, kSmallestShare * unoccluded);
-    const double sum = CellIntegral(pair, error).whole();
+    const double sum = CellIntegral(pair, error, scratch).whole();
     if (sum >= (1.0 - kRounding) * unoccluded) return unoccluded;
     return sum > kRounding * unoccluded ? sum : 0.0;
 }

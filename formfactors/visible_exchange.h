@@ -1,7 +1,9 @@
 #pragma once
 
 #include "formfactors/convex_polygon.h"
+#include "formfactors/gauss_exchange.h"
 #include "formfactors/occluders.h"
+#include "formfactors/visible_parts.h"
 
 #include <span>
 #include <vector>
@@ -24,12 +26,20 @@ struct OccludedPair {
 /// polygon from the other wholly.
 bool dropClearOccluders(OccludedPair& pair);
 
+/// Keeps its memory from call to call.
+struct VisibleExchangeScratch {
+    VisibleParts::Scratch parts;
+    std::vector<WeightedPoint> points;
+    ExchangeScratch exchange;
+};
+
 /// A_from · F_from,to in m² of what is visible. `unoccluded` is what it would be without occluders. The relative error aimed
 /// at is that of the visible part, but no less than a hundredth of the error that it would make of the unoccluded.
 ///
 /// From a point the visible part of a polygon is exact. Over `from` it is smooth between the lines where a corner and an edge
 /// of `to` and of an occluder come into line: these divide `from` into cells, which are integrated by Gauss rules and
 /// subdivided until two rules agree.
-double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError);
+double visibleExchange(const OccludedPair& pair, double unoccluded, double relativeError,
+                       VisibleExchangeScratch& scratch);
 
 } // namespace lambert

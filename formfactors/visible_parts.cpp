@@ -47,17 +47,14 @@ bool subtractCone(std::span<const Plane> planes, const ConvexPolygon& polygon, s
 } // namespace
 
 VisibleParts::VisibleParts(const glm::dvec3& point, const ConvexPolygon& polygon,
-                           std::span<const Occluder* const> occluders, double tolerance)
-    : point_(point), parts_([]() -> std::vector<ConvexPolygon>& {
-          static thread_local std::vector<ConvexPolygon> scratch;
-          return scratch;
-      }()) {
-    parts_.assign(1, polygon);
+                           std::span<const Occluder* const> occluders, double tolerance, Scratch& scratch)
+    : point_(point), scratch_(scratch) {
+    scratch_.parts.assign(1, polygon);
     for (const Occluder* occluder : occluders) {
         subtract(*occluder, polygon, tolerance);
-        if (parts_.empty()) break;
+        if (scratch_.parts.empty()) break;
     }
-    if (parts_.empty()) visibility_ = Visibility::None;
+    if (scratch_.parts.empty()) visibility_ = Visibility::None;
 }
 
 void VisibleParts::subtract(const Occluder& occluder, const ConvexPolygon& whole, double tolerance) {
@@ -65,12 +62,11 @@ void VisibleParts::subtract(const Occluder& occluder, const ConvexPolygon& whole
     if (std::abs(height) <= 1e-3 * tolerance) return; // seen edge-on
     // What is hidden lies behind the occluder and within the cone of its edges. Planes that the whole polygon lies in front of
     // cut none of its parts.
-    static thread_local std::array<Plane, ConvexPolygon::kMostCorners + 1> planes;
     std::size_t count = 0;
     const double side = height > 0.0 ? 1.0 : -1.0;
     const std::size_t n = occluder.corners.size();
     for (std::size_t k = 0; k <= n; ++k) {
-        Plane& plane = planes[count];
+        Plane& plane = scratch_.planes[count];
         if (k == 0) {
             plane = {-side * occluder.plane.normal, -side * occluder.plane.offset, -1};
         } else {
@@ -81,26 +77,26 @@ void VisibleParts::subtract(const Occluder& occluder, const ConvexPolygon& whole
         if (!sides.above) return;
         if (sides.below) ++count;
     }
-    for (std::size_t k = 0, parts = parts_.size(); k < parts;) {
-        static thread_local std::vector<ConvexPolygon> left;
-        left.clear();
-        if (!subtractCone({planes.data(), count}, parts_[k], left)) {
+    std::vector<ConvexPolygon>& parts = scratch_.parts;
+    for (std::size_t k = 0, end = parts.size(); k < end;) {
+        scratch_.left.clear();
+        if (!subtractCone({scratch_.planes.data(), count}, parts[k], scratch_.left)) {
             ++k;
             continue;
         }
         visibility_ = Visibility::Part;
         // The last of those not yet looked at takes its place, new ones go to the end.
-        --parts;
-        parts_[k] = parts_[parts];
-        parts_[parts] = parts_.back();
-        parts_.pop_back();
-        parts_.insert(parts_.end(), left.begin(), left.end());
+        --end;
+        parts[k] = parts[end];
+        parts[end] = parts.back();
+        parts.pop_back();
+        parts.insert(parts.end(), scratch_.left.begin(), scratch_.left.end());
     }
 }
 
 double VisibleParts::formFactor(const glm::dvec3& normal) const {
     double sum = 0.0;
-    for (const ConvexPolygon& part : parts_) sum += pointToVisiblePolygon(point_, normal, part.points());
+    for (const ConvexPolygon& part : scratch_.parts) sum += pointToVisiblePolygon(point_, normal, part.points());
     return sum;
 }
 

@@ -5,7 +5,7 @@
 #include "meshing/divide_polygon.h"
 #include "meshing/near_contacts.h"
 #include "meshing/patch_mesh_builder.h"
-#include "meshing/patch_surface.h"
+#include "meshing/patch_optics.h"
 #include "meshing/scene_division.h"
 
 #include <fmt/format.h>
@@ -141,7 +141,7 @@ PatchMesh divideAsWanted(const Scene& scene, const MeshOptions& options, Progres
 PatchMesh buildPatchMesh(const Scene& scene, const MeshOptions& options, Progress& progress, MeshReport* report) {
     MeshReport counts;
     PatchMesh mesh = divideAsWanted(scene, options, progress, counts);
-    averageSurfaces(scene, mesh);
+    measureHoles(scene, mesh);
     if (report != nullptr) *report = counts;
     return mesh;
 }

@@ -66,10 +66,11 @@ private:
 /// Looks at one patch after the other.
 class Looker {
 public:
-    Looker(const RayCaster& rays, const PatchMesh& mesh, const PolygonIndex& index)
+    Looker(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics, const PolygonIndex& index)
         : rays_(rays),
           scene_(rays.scene()),
           mesh_(mesh),
+          optics_(optics),
           index_(index),
           tolerance_(2.0F * weldTolerance(rays.scene())) {}
 
@@ -77,7 +78,7 @@ public:
         setPoints(patch);
         const glm::vec3 normal = mesh_.normal[patch];
         const bool touched = isTouched(patch);
-        if (!touched && mesh_.emittedRadiosity[patch] != Rgb(0.0F)) return false;
+        if (!touched && optics_.emittedRadiosity[patch] != Rgb(0.0F)) return false;
         const float offset = patchOriginOffset(rays_, mesh_, patch);
         return seesBacksAlone(patch, normal, offset) || (touched && seesBacksAlone(patch, -normal, offset));
     }
@@ -168,6 +169,7 @@ private:
     const RayCaster& rays_;
     const Scene& scene_;
     const PatchMesh& mesh_;
+    const PatchOptics& optics_;
     const PolygonIndex& index_;
     float tolerance_;
     std::vector<glm::vec3> points_;
@@ -177,11 +179,11 @@ private:
 
 } // namespace
 
-std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh) {
+std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics) {
     const PolygonIndex index(rays.scene());
     std::vector<char> hidden(mesh.size(), 0); // of threads' own, which bits are not
     parallelFor(mesh.size(), 256, [&](std::size_t begin, std::size_t end, int) {
-        Looker looker(rays, mesh, index);
+        Looker looker(rays, mesh, optics, index);
         for (std::size_t patch = begin; patch < end; ++patch) hidden[patch] = looker.isHidden(patch) ? 1 : 0;
     });
     return {hidden.begin(), hidden.end()};

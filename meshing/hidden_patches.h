@@ -1,7 +1,7 @@
 #pragma once
 
-#include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "scene/rays/ray_caster.h"
 
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace lambert {
 /// A patch is hidden if everywhere another face touches it, front to front, and behind one of the two lies the inside of a
 /// solid, where all that is met are black backs. (Two faces back to back, of a partition, lie in one plane as well, but light
 /// reaches both.) A patch that touches nothing but sees black backs alone is hidden too unless it emits: light that is lost on
-/// backs is not to be passed over. `mesh` is a division of the rays' scene.
-std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh);
+/// backs is not to be passed over. `mesh` is a division of the rays' scene, `optics` are its.
+std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics);
 
 } // namespace lambert

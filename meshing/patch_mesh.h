@@ -16,7 +16,8 @@ struct OccluderEdge {
     glm::vec3 centroid;                               //!< of the occluder, metres
 };
 
-/// A scene divided into patches, as flat arrays for the kernels. Patches are triangles or convex planar quads.
+/// A scene divided into patches, as flat arrays for the kernels: the geometry alone, see PatchOptics for the rest. Patches are
+/// triangles or convex planar quads.
 ///
 /// Patches [0, frontCount) are the fronts of the source polygons, contiguous per polygon and in the polygons'
 /// order. The second sides of two-sided polygons follow, in the same order, with reversed corners.
@@ -27,9 +28,7 @@ struct PatchMesh {
 
     std::vector<glm::vec3> centroid;     //!< #patches, metres
     std::vector<glm::vec3> normal;       //!< #patches, unit length, to the patch's side
-    std::vector<float> area;             //!< #patches, m², of what is not a hole; see averageSurfaces
-    std::vector<Rgb> reflectance;        //!< #patches, mean over that area, 0 to 0.99
-    std::vector<Rgb> emittedRadiosity;   //!< #patches, mean over that area, B_e = π L_e
+    std::vector<float> area;             //!< #patches, m², of what is not a hole; see measureHoles
     std::vector<float> opacity;          //!< #patches, share of the patch that is not a hole; empty: no holes at all
     std::vector<std::uint32_t> polygon;  //!< #patches, into Scene::polygons
     std::vector<std::uint32_t> material; //!< #patches, into Scene::materials

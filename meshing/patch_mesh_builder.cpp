@@ -25,8 +25,6 @@ PatchMeshBuilder::PatchMeshBuilder(const Scene& scene, std::size_t expected, Mes
     mesh_.centroid.reserve(expected);
     mesh_.normal.reserve(expected);
     mesh_.area.reserve(expected);
-    mesh_.reflectance.reserve(expected);
-    mesh_.emittedRadiosity.reserve(expected);
     mesh_.polygon.reserve(expected);
     mesh_.material.reserve(expected);
 }
@@ -133,16 +131,13 @@ void PatchMeshBuilder::append(std::span<const Corners> faces) {
 }
 
 void PatchMeshBuilder::push(const Corners& corners, const glm::vec3& centroid, const glm::vec3& normal, float area,
-                            std::uint32_t polygon, std::uint32_t materialIndex) {
-    const Material& material = scene_.materials[materialIndex];
+                            std::uint32_t polygon, std::uint32_t material) {
     mesh_.corners.push_back(corners);
     mesh_.centroid.push_back(centroid);
     mesh_.normal.push_back(normal);
     mesh_.area.push_back(area);
-    mesh_.reflectance.push_back(material.reflectance);
-    mesh_.emittedRadiosity.push_back(std::numbers::pi_v<float> * material.emittedRadiance);
     mesh_.polygon.push_back(polygon);
-    mesh_.material.push_back(materialIndex);
+    mesh_.material.push_back(material);
 }
 
 void PatchMeshBuilder::addBack(std::uint32_t patch) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rendering/camera_rays.h"
-#include "scene/ray_caster.h"
+#include "picture/camera_rays.h"
+#include "scene/rays/ray_caster.h"
 
 namespace lambert {
 

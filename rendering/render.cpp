@@ -4,8 +4,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "rendering/camera_rays.h"
-#include "rendering/tone_mapping.h"
+#include "picture/camera_rays.h"
+#include "picture/tone_mapping.h"
 #include "scene/environment.h"
 
 #include <fmt/format.h>

@@ -3,8 +3,8 @@
 #include "baking/baked_mesh.h"
 #include "core/progress.h"
 #include "meshing/patch_mesh.h"
-#include "rendering/image.h"
-#include "scene/ray_caster.h"
+#include "picture/image.h"
+#include "scene/rays/ray_caster.h"
 
 #include <optional>
 

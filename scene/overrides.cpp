@@ -1,7 +1,7 @@
 #include "scene/overrides.h"
 
 #include "core/error.h"
-#include "scene/input_file.h"
+#include "core/text.h"
 #include "scene/name_match.h"
 
 #include <fmt/format.h>

@@ -1,11 +1,14 @@
 #pragma once
 
+#include "core/rgb.h"
+#include "picture/camera.h"
 #include "scene/texture.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -13,11 +16,10 @@
 
 namespace lambert {
 
-/// Linear RGB, Rec. 709 primaries.
-using Rgb = glm::vec3;
-
 /// Marks "none" wherever an index is expected.
 inline constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+inline bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// What texture coordinates beyond [0, 1] mean.
 enum class TextureWrap : std::uint8_t { Repeat, Mirror, Clamp };
@@ -32,10 +34,13 @@ struct TextureUse {
     bool operator==(const TextureUse&) const = default;
 };
 
+/// Of a reflectance, per channel; above it the number of bounces grows without bound.
+inline constexpr float kMaxReflectance = 0.99F;
+
 /// A diffuse surface.
 struct Material {
     std::string name;
-    Rgb reflectance{0.5F};     //!< per channel, 0 to 0.99; times its texture and the polygon's tint
+    Rgb reflectance{0.5F};     //!< per channel, 0 to kMaxReflectance; times its texture and the polygon's tint
     Rgb emittedRadiance{0.0F}; //!< L_e, >= 0, per m² and sr; the emitted radiosity is π L_e; times its texture
     bool twoSided = false;     //!< reflects and emits on the back as well
     /// Only blocks light, is black on both sides and not part of what is baked: its polygons have no patches, their edges
@@ -73,15 +78,6 @@ struct Polygon {
 
     bool isQuad() const { return vertices[3] != kNone; }
     int size() const { return isQuad() ? 4 : 3; }
-};
-
-/// A pinhole camera. Looks from `eye` along `direction`.
-struct Camera {
-    std::string name;
-    glm::vec3 eye{0.0F};
-    glm::vec3 direction{0.0F, 0.0F, -1.0F}; //!< unit length
-    glm::vec3 up{0.0F, 1.0F, 0.0F};         //!< not parallel to `direction`
-    float verticalFov = 0.8F;               //!< radians, full angle, 0 to π
 };
 
 /// A light without area, as KHR_lights_punctual defines it.

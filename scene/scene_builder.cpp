@@ -1,9 +1,10 @@
 #include "scene/scene_builder.h"
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/triangulation.h"
-#include "scene/input_file.h"
 #include "scene/merge_warnings.h"
+#include "scene/named_file.h"
 #include "scene/polygon_shape.h"
 
 #include <fmt/format.h>
@@ -28,8 +29,6 @@ constexpr float kSmallestScene =
     1e-10F;                      // metres: each of 10^8 patches has an area in single precision, with much to spare
 constexpr double kCoarse = 1e-5; // of the diagonal: coarser coordinates open gaps that light finds
 constexpr double kMaxOffPlane = 1e-5; // of a quad's longest diagonal
-
-bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 SceneBuilder::CornerSurface finite(SceneBuilder::CornerSurface corner) {
     const auto clean = [](float value) { return std::isfinite(value) ? value : 0.0F; };

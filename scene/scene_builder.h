@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/distant_origin.h"
-#include "scene/scene_reader.h"
+#include "scene/reading.h"
 
 #include <glm/vec3.hpp>
 
@@ -11,9 +11,6 @@
 #include <string>
 
 namespace lambert {
-
-/// Per channel; above it the number of bounces grows without bound.
-inline constexpr float kMaxReflectance = 0.99F;
 
 /// A factor of textures or tints: up to white it is brought to the largest reflectance, so that white, which is what most
 /// such factors are, needs no warning; beyond white it stays, for SceneBuilder::addMaterial to warn.

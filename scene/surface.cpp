@@ -9,8 +9,6 @@ namespace lambert {
 
 namespace {
 
-constexpr float kMaxReflectance = 0.99F;
-
 /// What is given at a polygon's corners, at a point of its chart.
 template <typename Value>
 Value atChart(const std::array<Value, 4>& corners, bool isQuad, float u, float v) {

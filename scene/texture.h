@@ -45,9 +45,6 @@ private:
     std::vector<glm::vec4> floats_; //!< one of the two is empty
 };
 
-/// The linear value of an sRGB one, both 0 to 1.
-double srgbDecoded(double value);
-
 /// How the numbers of an image become a texture.
 enum class TextureContent {
     Colour,    //!< 8-bit images are sRGB; opacity is the alpha channel, 1 without one
@@ -58,7 +55,7 @@ enum class TextureContent {
 /// A plain square of 16,384 texels.
 inline constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
 
-/// Reads an image through OpenImageIO. Throws InputError with one reason if it is missing, broken, of zero size, or has more
+/// Reads an image file. Throws InputError with one reason if it is missing, broken, of zero size, or has more
 /// than `mostTexels`, a power of 2.
 std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path, TextureContent content,
                                            std::uint64_t mostTexels = kMostTexels);

@@ -28,7 +28,7 @@ from mutation import SOUND_NAME, write
 REPOSITORY = Path(__file__).resolve().parents[1]
 EXTENSIONS = (".obj", ".gltf", ".glb", ".ply", ".stl", ".mgf")
 # The whole path in as little time as it takes: the rule is about broken files, not about large sound ones.
-CHEAP = ("--patches", "200", "--resolution", "4", "--threads", "1", "--quiet")
+CHEAP = ("--patches", "200", "--resolution", "4", "--curve-segments", "8", "--threads", "1", "--quiet")
 NO_LIGHT = "--emit"     # names the option in the refusal of a scene without light
 PATIENCE = 6            # a run is stopped after so many times its limit
 OK, MISSED, INPUT = 0, 1, 3

@@ -3,7 +3,7 @@
 #include "core/progress.h"
 #include "core/sample_points.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/solution.h"
 
 #include <cstdint>

@@ -29,8 +29,7 @@ constexpr double kEven = 0.1;        ///< relative: points of a patch that vary 
 double sum(const RgbSum& v) { return v.x + v.y + v.z; }
 
 std::uint64_t keyOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
-    const auto key = philox({index, 0, 0, kind}, seed);
-    return std::uint64_t{key[0]} << 32 | key[1];
+    return randomKey({index, 0, 0, kind}, seed);
 }
 
 /// The mean of batches, and what it may be off by.
@@ -65,8 +64,8 @@ ReceiverPlane planeOf(const PatchMesh& mesh, std::size_t patch) {
 
 } // namespace
 
-EmitterLight::EmitterLight(const RayCaster& rays, const PatchMesh& mesh, std::uint64_t seed)
-    : rays_(rays), seed_(seed), tree_(rays, mesh) {}
+EmitterLight::EmitterLight(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics, std::uint64_t seed)
+    : rays_(rays), seed_(seed), tree_(rays, mesh, optics) {}
 
 std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& progress,
                                              std::vector<std::vector<RgbSum>>* byMaterial) const {

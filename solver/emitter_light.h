@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/emitter_tree.h"
 #include "solver/solution.h"
 
@@ -29,8 +29,8 @@ struct EstimatedLight {
 /// analytically determined form-factors", SIGGRAPH 1989.
 class EmitterLight {
 public:
-    /// `rays`, of the scene of `mesh`, must outlive it; `mesh` need not.
-    EmitterLight(const RayCaster& rays, const PatchMesh& mesh, std::uint64_t seed);
+    /// `rays`, of the scene of `mesh`, must outlive it; `mesh` and `optics` need not.
+    EmitterLight(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics, std::uint64_t seed);
 
     bool empty() const { return tree_.triangles().empty(); } //!< nothing emits
     /// The materials that emit, into Scene::materials, ascending.

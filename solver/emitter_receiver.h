@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/spherical_triangle.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/emitter_tree.h"
 #include "solver/solution.h"
 

@@ -93,8 +93,8 @@ double EmitterTriangle::radius() const {
     return std::sqrt(squared);
 }
 
-EmitterTree::EmitterTree(const RayCaster& rays, const PatchMesh& mesh) {
-    collect(rays, mesh);
+EmitterTree::EmitterTree(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics) {
+    collect(rays, mesh, optics);
     std::vector<std::uint32_t> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::stable_sort(order.begin(), order.end(),
@@ -108,10 +108,10 @@ EmitterTree::EmitterTree(const RayCaster& rays, const PatchMesh& mesh) {
 }
 
 /// A polygon's side emits as one if its patches are all of it and emit alike.
-void EmitterTree::collect(const RayCaster& rays, const PatchMesh& mesh) {
+void EmitterTree::collect(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics) {
     const Scene& scene = rays.scene();
     for (std::size_t i = 0; i < mesh.size(); ++i)
-        if (mesh.emittedRadiosity[i] != Rgb(0.0F)) groups_.push_back(mesh.material[i]);
+        if (optics.emittedRadiosity[i] != Rgb(0.0F)) groups_.push_back(mesh.material[i]);
     std::sort(groups_.begin(), groups_.end());
     groups_.erase(std::unique(groups_.begin(), groups_.end()), groups_.end());
     const auto sameSide = [&](std::size_t a, std::size_t b) {
@@ -122,10 +122,10 @@ void EmitterTree::collect(const RayCaster& rays, const PatchMesh& mesh) {
         bool alike = true;
         double area = 0.0;
         for (; last < mesh.size() && sameSide(first, last); ++last) {
-            alike = alike && mesh.emittedRadiosity[last] == mesh.emittedRadiosity[first];
+            alike = alike && optics.emittedRadiosity[last] == optics.emittedRadiosity[first];
             area += static_cast<double>(mesh.area[last]);
         }
-        const Rgb emitted = mesh.emittedRadiosity[first];
+        const Rgb emitted = optics.emittedRadiosity[first];
         const auto group = static_cast<std::uint32_t>(
             std::lower_bound(groups_.begin(), groups_.end(), mesh.material[first]) - groups_.begin());
         const double whole = polygonArea(scene, scene.polygons[mesh.polygon[first]]);
@@ -133,7 +133,8 @@ void EmitterTree::collect(const RayCaster& rays, const PatchMesh& mesh) {
             if (emitted != Rgb(0.0F)) addPolygon(rays, mesh.polygon[first], mesh.isBack(first), RgbSum(emitted), group);
         } else {
             for (std::size_t i = first; i < last; ++i)
-                if (mesh.emittedRadiosity[i] != Rgb(0.0F)) addPatch(rays, mesh, i, group);
+                if (optics.emittedRadiosity[i] != Rgb(0.0F))
+                    addPatch(rays, mesh, i, RgbSum(optics.emittedRadiosity[i]), group);
         }
         first = last;
     }
@@ -151,9 +152,10 @@ void EmitterTree::addPolygon(const RayCaster& rays, std::uint32_t polygon, bool 
     }
 }
 
-void EmitterTree::addPatch(const RayCaster& rays, const PatchMesh& mesh, std::size_t patch, std::uint32_t group) {
+void EmitterTree::addPatch(const RayCaster& rays, const PatchMesh& mesh, std::size_t patch, const RgbSum& emitted,
+                           std::uint32_t group) {
     const double opacity = mesh.opacity.empty() ? 1.0 : static_cast<double>(mesh.opacity[patch]);
-    const RgbSum radiosity = opacity * RgbSum(mesh.emittedRadiosity[patch]);
+    const RgbSum radiosity = opacity * emitted;
     const double lift = static_cast<double>(patchOriginOffset(rays, mesh, patch));
     const auto at = [&](int k) { return glm::dvec3(mesh.position(patch, k)); };
     for (int k = 1; k + 1 < mesh.cornerCount(patch); ++k)

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/solution.h"
 
 #include <glm/vec3.hpp>
@@ -61,7 +61,7 @@ struct EmitterTerminal {
 /// Lights as a tree that each receiver cuts: B. Walter et al., "Lightcuts: a scalable approach to illumination", SIGGRAPH 2005.
 class EmitterTree {
 public:
-    EmitterTree(const RayCaster& rays, const PatchMesh& mesh);
+    EmitterTree(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics);
 
     std::span<const EmitterTriangle> triangles() const { return triangles_; }
     const EmitterNode& node(std::uint32_t index) const { return nodes_[index]; }
@@ -84,8 +84,9 @@ public:
     std::uint32_t chooseFar(std::uint32_t node, const glm::dvec3& point, double u) const;
 
 private:
-    void collect(const RayCaster& rays, const PatchMesh& mesh);
-    void addPatch(const RayCaster& rays, const PatchMesh& mesh, std::size_t patch, std::uint32_t group);
+    void collect(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics);
+    void addPatch(const RayCaster& rays, const PatchMesh& mesh, std::size_t patch, const RgbSum& emitted,
+                  std::uint32_t group);
     void addPolygon(const RayCaster& rays, std::uint32_t polygon, bool back, const RgbSum& radiosity,
                     std::uint32_t group);
     void add(EmitterTriangle triangle);

@@ -72,7 +72,7 @@ class LineCounts {
 public:
     explicit LineCounts(std::size_t patches) : lines_(patches, 0), backs_(patches, 0) {}
 
-    void addLines(std::size_t patch, std::uint32_t count) { increase(lines_[patch], count); } ///< from any thread
+    void addLines(std::size_t patch, std::uint64_t count) { increase(lines_[patch], count); } ///< from any thread
     void addBack(std::size_t patch) { increase(backs_[patch], 1); }                           ///< from any thread
 
     /// An estimate of F_back; 0 if there were no lines.
@@ -88,10 +88,10 @@ public:
     }
 
 private:
-    static void increase(std::uint32_t& number, std::uint32_t by) {
+    static void increase(std::uint64_t& number, std::uint64_t by) {
         std::atomic_ref(number).fetch_add(by, std::memory_order_relaxed);
     }
-    std::vector<std::uint32_t> lines_, backs_;
+    std::vector<std::uint64_t> lines_, backs_;
 };
 
 /// The largest magnitude of the channels.

@@ -5,17 +5,26 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace lambert {
 
 namespace {
+
+struct LineSolverTraits {
+    LineSolver solver;
+    std::string_view name;
+};
+constexpr std::array kSolvers{LineSolverTraits{LineSolver::Stochastic, "stochastic"},
+                              LineSolverTraits{LineSolver::RandomWalk, "random-walk"}};
 
 std::uint64_t mostRays(const LineSolverOptions& o) { return o.rays.value_or(LineSolverOptions::kMostRays); }
 
 /// 0: the rays decide.
 double target(const LineSolverOptions& o) { return o.targetError.value_or(o.rays ? 0.0 : o.kTargetError); }
 
-StochasticSolution relax(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& o,
-                         Progress& progress, const SolverContext& context) {
+StochasticSolution relax(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
+                         const LineSolverOptions& o, Progress& progress, const SolverContext& context) {
     StochasticRelaxationOptions options;
     options.rays = mostRays(o);
     options.targetError = target(o);
@@ -23,20 +32,34 @@ StochasticSolution relax(const SolverProblem& problem, const RayCaster& rays, co
     options.lineSet = o.lineSet;
     options.sampler = o.sampler;
     options.seed = o.seed;
-    return solveStochasticRelaxation(problem, rays, options, progress, context);
+    return solveStochasticRelaxation(problem, mesh, rays, options, progress, context);
 }
 
-StochasticSolution walk(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& o,
-                        Progress& progress, const SolverContext& context) {
+StochasticSolution walk(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
+                        const LineSolverOptions& o, Progress& progress, const SolverContext& context) {
     RandomWalkOptions options;
     options.walks = mostRays(o);
     options.targetError = target(o);
     options.sampler = o.sampler;
     options.seed = o.seed;
-    return solveRandomWalks(problem, rays, options, progress, context);
+    return solveRandomWalks(problem, mesh, rays, options, progress, context);
 }
 
 } // namespace
+
+std::optional<LineSolver> lineSolverByName(std::string_view name) {
+    for (const LineSolverTraits& traits : kSolvers)
+        if (traits.name == name) return traits.solver;
+    return std::nullopt;
+}
+
+std::string_view nameOf(LineSolver solver) { return kSolvers.at(static_cast<std::size_t>(solver)).name; }
+
+std::vector<std::string> lineSolverNames() {
+    std::vector<std::string> names;
+    for (const LineSolverTraits& traits : kSolvers) names.emplace_back(traits.name);
+    return names;
+}
 
 void checkLineSolver(const LineSolverOptions& o) {
     if (o.rays && *o.rays == 0) throw UsageError("--rays: found 0, at least 1 is needed");
@@ -45,15 +68,15 @@ void checkLineSolver(const LineSolverOptions& o) {
             fmt::format("--target-error: found {}, allowed are numbers above 0 and below 1", *o.targetError));
     if (o.sampler != Sampler::Sobol && o.sampler != Sampler::Random)
         throw UsageError(fmt::format("--sampler: the solver {} draws its rays from sobol or random, not from {}",
-                                     nameOf(o.method), nameOf(o.sampler)));
-    if (o.method == SolverMethod::RandomWalk && o.lines == RelaxationLines::Global)
+                                     nameOf(o.solver), nameOf(o.sampler)));
+    if (o.solver == LineSolver::RandomWalk && o.lines == RelaxationLines::Global)
         throw UsageError("--method: random walks go along local-lines");
 }
 
-StochasticSolution solveByLines(const SolverProblem& problem, const RayCaster& rays, const LineSolverOptions& options,
-                                Progress& progress, const SolverContext& context) {
+StochasticSolution solveByLines(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
+                                const LineSolverOptions& options, Progress& progress, const SolverContext& context) {
     checkLineSolver(options);
-    return (options.method == SolverMethod::RandomWalk ? walk : relax)(problem, rays, options, progress, context);
+    return (options.solver == LineSolver::RandomWalk ? walk : relax)(problem, mesh, rays, options, progress, context);
 }
 
 std::string lineSolverIdentity(const SolverProblem& problem, const LineSolverOptions& o) {
@@ -61,7 +84,7 @@ std::string lineSolverIdentity(const SolverProblem& problem, const LineSolverOpt
                               : o.lineSet == LineSet::Chords    ? "global chords"
                                                                 : "global bundles";
     return fmt::format("{}, {}, {}, at most {} rays, target error {}, seed {}, {} patches, light {:016x}",
-                       nameOf(o.method), lines, nameOf(o.sampler), mostRays(o), target(o), o.seed, problem.size(),
+                       nameOf(o.solver), lines, nameOf(o.sampler), mostRays(o), target(o), o.seed, problem.size(),
                        problem.checksum());
 }
 

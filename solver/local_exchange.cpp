@@ -26,17 +26,17 @@ struct LocalExchange::Scratch {
 LocalExchange::LocalExchange(const PatchMesh& mesh, const RayCaster& rays, Sampler sampler)
     : mesh_(mesh), rays_(mesh, rays, sampler), next_(mesh.size(), 0) {}
 
-void LocalExchange::restart() { std::fill(next_.begin(), next_.end(), 0U); }
+void LocalExchange::restart() { std::fill(next_.begin(), next_.end(), std::uint64_t{0}); }
 
 /// The runs that make up the rays [first, last).
 void LocalExchange::findRuns(const RayAllotment& allotment, std::uint64_t first, std::uint64_t last,
                              std::vector<RayRun>& runs) const {
     runs.clear();
-    allotment.visit(first, last, [&](std::size_t patch, std::uint64_t ray, std::uint32_t count) {
+    allotment.visit(first, last, [&](std::size_t patch, std::uint64_t ray, std::uint64_t count) {
         const std::uint64_t from = std::max(ray, first);
         const std::uint64_t to = std::min(ray + count, last);
-        runs.push_back({static_cast<std::uint32_t>(patch), next_[patch] + static_cast<std::uint32_t>(from - ray),
-                        static_cast<std::uint32_t>(to - from)});
+        runs.push_back(
+            {static_cast<std::uint32_t>(patch), next_[patch] + (from - ray), static_cast<std::uint32_t>(to - from)});
     });
 }
 
@@ -116,7 +116,7 @@ std::uint64_t LocalExchange::exchange(const ExchangeInput& input, FixedPointSums
             progress.advance(last - first);
         }
     });
-    allotment.visitAll([&](std::size_t patch, std::uint64_t, std::uint32_t count) {
+    allotment.visitAll([&](std::size_t patch, std::uint64_t, std::uint64_t count) {
         next_[patch] += count;
         counts.addLines(patch, count);
     });

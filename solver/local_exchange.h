@@ -41,7 +41,7 @@ private:
 
     const PatchMesh& mesh_;
     PatchRays rays_;
-    std::vector<std::uint32_t> next_; ///< of each patch's sequence
+    std::vector<std::uint64_t> next_; ///< of each patch's sequence
 };
 
 } // namespace lambert

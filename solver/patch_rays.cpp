@@ -89,10 +89,12 @@ std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
     std::size_t ray = 0;
     for (std::uint32_t r = 0; r < batch.runs.size(); ++r) {
         const RayRun& run = batch.runs[r];
-        const auto key = philox({run.patch, 0, 0, kPatchStream}, seed);
-        const std::uint64_t own = (std::uint64_t{key[0]} << 32) | key[1];
+        std::array<std::uint32_t, 4> key{};
         for (std::uint32_t k = 0; k < run.count; ++k, ++ray) {
-            const std::uint32_t index = run.first + k;
+            const auto index = static_cast<std::uint32_t>(run.first + k);
+            if (k == 0 || index == 0)
+                key = philox({run.patch, static_cast<std::uint32_t>((run.first + k) >> 32), 0, kPatchStream}, seed);
+            const std::uint64_t own = (std::uint64_t{key[0]} << 32) | key[1];
             const auto point = sampler_ == Sampler::Sobol ? sobol4(index) : philox({index, 0, 0, kPatchStream}, own);
             batch.runOf[ray] = r;
             for (std::size_t d = 0; d < 4; ++d) {

@@ -3,7 +3,7 @@
 #include "core/sample_points.h"
 #include "formfactors/cell_sorter.h"
 #include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <cstdint>
 #include <vector>
@@ -13,12 +13,12 @@ namespace lambert {
 /// A run of a patch's sequence of rays.
 struct RayRun {
     std::uint32_t patch;
-    std::uint32_t first; //!< index of the run's first ray in the patch's sequence
+    std::uint64_t first; //!< index of the run's first ray in the patch's sequence
     std::uint32_t count;
 };
 
 /// Rays that start uniformly on patches with cosine-distributed directions: a sequence for each patch and seed, of which any run can
-/// be had. For many patches with few rays each; rays of all runs together are sorted by direction and traced in packets.
+/// be had; Sobol points begin anew, scrambled otherwise, after 2^32. For many patches with few rays each; rays of all runs together are sorted by direction and traced in packets.
 class PatchRays {
 public:
     /// Rays of one batch of runs; one per thread, keeps its memory.

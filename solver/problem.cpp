@@ -10,9 +10,9 @@
 
 namespace lambert {
 
-SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance,
+SolverProblem::SolverProblem(const PatchViews& patches, std::vector<RgbSum> directIrradiance,
                              const std::vector<RgbSum>& emittersIrradiance)
-    : mesh_(mesh), direct_(std::move(directIrradiance)), emittersApart_(!emittersIrradiance.empty()) {
+    : patches_(patches), direct_(std::move(directIrradiance)), emittersApart_(!emittersIrradiance.empty()) {
     for (std::size_t i = 0; i < direct_.size(); ++i) received_ += area(i) * direct_[i];
     if (emittersApart_) {
         direct_.resize(size(), RgbSum(0.0));
@@ -24,7 +24,7 @@ SolverProblem::SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIr
         const RgbSum b = source(i);
         squares += area(i) * glm::dot(b, b);
         const RgbSum e = direct(i);
-        lit = lit || area(i) * glm::dot(e, e) > 0.0 || mesh.emittedRadiosity[i] != Rgb(0.0F);
+        lit = lit || area(i) * glm::dot(e, e) > 0.0 || patches.emittedRadiosity[i] != Rgb(0.0F);
     }
     if (!(squares > 0.0) && !lit)
         throw InputError("the scene has no light: no material emits, and no light without area reaches a "
@@ -46,9 +46,9 @@ std::vector<RgbSum> SolverProblem::startRadiosity(std::span<const RgbSum> start)
 
 std::uint64_t SolverProblem::checksum() const {
     Checksum sum;
-    sum.add(mesh_.area);
-    sum.add(mesh_.reflectance);
-    sum.add(mesh_.emittedRadiosity);
+    sum.add(std::as_bytes(patches_.area));
+    sum.add(std::as_bytes(patches_.reflectance));
+    sum.add(std::as_bytes(patches_.emittedRadiosity));
     sum.add(direct_);
     sum.add(std::uint64_t{emittersApart_});
     return sum.value();

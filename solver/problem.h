@@ -1,6 +1,6 @@
 #pragma once
 
-#include "meshing/patch_mesh.h"
+#include "meshing/patch_optics.h"
 #include "solver/solution.h"
 
 #include <cstdint>
@@ -8,6 +8,17 @@
 #include <vector>
 
 namespace lambert {
+
+/// What is given of patches, #patches each. Whoever fills it in keeps the arrays.
+struct PatchViews {
+    std::span<const float> area;           //!< m²
+    std::span<const Rgb> reflectance;      //!< ρ, 0 to 0.99
+    std::span<const Rgb> emittedRadiosity; //!< B_e, per m²
+
+    PatchViews(std::span<const float> patchArea, const PatchOptics& optics)
+        : area(patchArea), reflectance(optics.reflectance), emittedRadiosity(optics.emittedRadiosity) {}
+    PatchViews(const PatchMesh& mesh, const PatchOptics& optics) : PatchViews(std::span(mesh.area), optics) {}
+};
 
 /// What is to be solved, but for the form factors, for every patch i and channel:
 ///
@@ -17,26 +28,25 @@ namespace lambert {
 /// it has ended, settle() adds what was left out.
 class SolverProblem {
 public:
-    /// `mesh` must outlive the problem. `directIrradiance` is E_0 per m², from lights without area: #patches, or empty where
-    /// there are none. `emittersIrradiance`: the same of all that the mesh emits; empty: left to the form factors. Throws
+    /// `patches` must outlive the problem. `directIrradiance` is E_0 per m², from lights without area: #patches, or empty where
+    /// there are none. `emittersIrradiance`: the same of all that emits; empty: left to the form factors. Throws
     /// InputError if nothing emits and nothing is lit.
-    explicit SolverProblem(const PatchMesh& mesh, std::vector<RgbSum> directIrradiance = {},
+    explicit SolverProblem(const PatchViews& patches, std::vector<RgbSum> directIrradiance = {},
                            const std::vector<RgbSum>& emittersIrradiance = {});
 
-    std::size_t size() const { return mesh_.size(); } //!< #patches
-    const PatchMesh& mesh() const { return mesh_; }
+    std::size_t size() const { return patches_.area.size(); } //!< #patches
+    const PatchViews& patches() const { return patches_; }
 
-    double area(std::size_t i) const { return static_cast<double>(mesh_.area[i]); }  //!< A, m²
-    RgbSum reflectance(std::size_t i) const { return RgbSum(mesh_.reflectance[i]); } //!< ρ
-    RgbSum emitted(std::size_t i) const {
-        return emittersApart_ ? RgbSum(0.0) : RgbSum(mesh_.emittedRadiosity[i]);
-    } //!< B_e, as far as form factors carry it
+    double area(std::size_t i) const { return static_cast<double>(patches_.area[i]); }  //!< A, m²
+    RgbSum reflectance(std::size_t i) const { return RgbSum(patches_.reflectance[i]); } //!< ρ
+    /// B_e, as far as form factors carry it.
+    RgbSum emitted(std::size_t i) const { return emittersApart_ ? RgbSum(0.0) : allEmitted(i); }
     RgbSum direct(std::size_t i) const { return direct_.empty() ? RgbSum(0.0) : direct_[i]; }          //!< E_0
     RgbSum source(std::size_t i) const { return emitted(i) + reflectance(i) * direct(i); }             //!< B_e + ρ E_0
     RgbSum radiosity(std::size_t i, const RgbSum& e) const { return emitted(i) + reflectance(i) * e; } //!< B_e + ρ E
 
     /// B_e, whatever carries it.
-    RgbSum allEmitted(std::size_t i) const { return RgbSum(mesh_.emittedRadiosity[i]); }
+    RgbSum allEmitted(std::size_t i) const { return RgbSum(patches_.emittedRadiosity[i]); }
     /// Σ A E_0 of lights without area alone.
     const RgbSum& received() const { return received_; }
     bool emittersApart() const { return emittersApart_; } //!< E_0 holds their light
@@ -56,7 +66,7 @@ public:
 private:
     double sumOfSquares(std::span<const RgbSum> values) const;
 
-    const PatchMesh& mesh_;
+    PatchViews patches_;
     std::vector<RgbSum> direct_;
     bool emittersApart_ = false;
     RgbSum received_{0.0};

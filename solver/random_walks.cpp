@@ -39,9 +39,10 @@ float survival(const Rgb& reflectance) { return std::max({reflectance.x, reflect
 /// Sub-runs, one after the other in the same memory.
 class WalkRun {
 public:
-    WalkRun(const SolverProblem& problem, const RayCaster& rays, const RandomWalkOptions& options)
+    WalkRun(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
+            const RandomWalkOptions& options)
         : problem_(problem),
-          mesh_(problem.mesh()),
+          mesh_(mesh),
           options_(options),
           births_(mesh_, rays, options.sampler),
           steps_(mesh_, rays, Sampler::Random),
@@ -146,7 +147,7 @@ void WalkRun::setScales(double walks) {
     const double power =
         orderedSum(mesh_.size(), Maximum{}, [&](std::size_t i) { return Maximum{largest(sender_[i].excess)}; }).value;
     const double factor = orderedSum(mesh_.size(), Maximum{1.0}, [&](std::size_t i) {
-                              const auto q = static_cast<double>(survival(mesh_.reflectance[i]));
+                              const auto q = static_cast<double>(survival(problem_.patches().reflectance[i]));
                               if (options_.estimator == WalkEstimator::Collision) return Maximum{1.0};
                               if (options_.estimator == WalkEstimator::Absorption) return Maximum{1.0 / (1.0 - q)};
                               return Maximum{q > 0.0 ? 1.0 / q : 1.0};
@@ -160,7 +161,7 @@ void WalkRun::setScales(double walks) {
 void WalkRun::walk(const RayAllotment& allotment, std::uint64_t first, std::uint64_t last, std::uint64_t seed,
                    Scratch& scratch) {
     scratch.walks.clear();
-    allotment.visit(first, last, [&](std::size_t patch, std::uint64_t ray, std::uint32_t count) {
+    allotment.visit(first, last, [&](std::size_t patch, std::uint64_t ray, std::uint64_t count) {
         for (std::uint64_t number = std::max(ray, first); number < std::min(ray + count, last); ++number)
             scratch.walks.push_back(
                 {static_cast<std::uint32_t>(patch), static_cast<std::uint32_t>(number), sender_[patch].excess});
@@ -171,8 +172,7 @@ void WalkRun::walk(const RayAllotment& allotment, std::uint64_t first, std::uint
         std::sort(scratch.walks.begin(), scratch.walks.end(), [](const Walk& a, const Walk& b) {
             return a.patch != b.patch ? a.patch < b.patch : a.number < b.number;
         });
-        const auto key = philox({k, 0, 0, kBirthStream}, seed);
-        step(steps_, (std::uint64_t{key[0]} << 32) | key[1], scratch);
+        step(steps_, randomKey({k, 0, 0, kBirthStream}, seed), scratch);
     }
 }
 
@@ -196,7 +196,7 @@ void WalkRun::arrive(Walk walk, std::uint32_t target, std::uint64_t seed, Scratc
         scratch.losses.add(back, walk.power, lossScale_);
         return;
     }
-    const Rgb& reflectance = mesh_.reflectance[target];
+    const Rgb& reflectance = problem_.patches().reflectance[target];
     const float q = survival(reflectance);
     const bool survives = uniformFloat(philox({walk.number, 0, 0, kSurvivalStream}, seed)[0]) < q;
     switch (options_.estimator) {
@@ -223,7 +223,7 @@ void check(const RandomWalkOptions& o) {
 
 } // namespace
 
-StochasticSolution solveRandomWalks(const SolverProblem& problem, const RayCaster& rays,
+StochasticSolution solveRandomWalks(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                     const RandomWalkOptions& options, Progress& progress,
                                     const SolverContext& context) {
     check(options);
@@ -232,7 +232,7 @@ StochasticSolution solveRandomWalks(const SolverProblem& problem, const RayCaste
     SubRunStatistics statistics(problem);
     StochasticSolution solution;
     {
-        WalkRun run(problem, rays, options);
+        WalkRun run(problem, mesh, rays, options);
         const auto state = [&](auto& archive) {
             statistics.keep(archive);
             archive(solution.history);

@@ -2,7 +2,7 @@
 
 #include "core/progress.h"
 #include "core/sample_points.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/problem.h"
 #include "solver/solver_checkpoint.h"
 #include "solver/stochastic_solution.h"
@@ -36,9 +36,9 @@ struct RandomWalkOptions {
 ///
 /// P. Dutré, K. Bala, P. Bekaert, Advanced Global Illumination, section 6.4.
 ///
-/// A checkpoint is offered the state every half a million walks, 56 bytes per patch. `rays`, and all else: as
+/// A checkpoint is offered the state every half a million walks, 64 bytes per patch. `rays`, and all else: as
 /// solveStochasticRelaxation.
-StochasticSolution solveRandomWalks(const SolverProblem& problem, const RayCaster& rays,
+StochasticSolution solveRandomWalks(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                     const RandomWalkOptions& options, Progress& progress,
                                     const SolverContext& context = {});
 

@@ -26,7 +26,7 @@ public:
     void visit(std::uint64_t first, std::uint64_t last, Use&& use) const {
         for (std::size_t block = blockOf(first); block + 1 < start_.size(); ++block) {
             if (static_cast<std::uint64_t>(start_[block]) >= last) return;
-            visitBlock(block, [&](std::size_t patch, std::uint64_t ray, std::uint32_t count) {
+            visitBlock(block, [&](std::size_t patch, std::uint64_t ray, std::uint64_t count) {
                 if (ray < last && ray + count > first) use(patch, ray, count);
             });
         }
@@ -54,7 +54,7 @@ private:
         for (std::size_t i = block * kBlock; i < std::min((block + 1) * kBlock, mesh_.size()); ++i) {
             sum += mean(i);
             const auto end = static_cast<std::uint64_t>(start + sum);
-            if (end > ray) use(i, ray, static_cast<std::uint32_t>(end - ray));
+            if (end > ray) use(i, ray, end - ray);
             ray = end;
         }
     }

@@ -29,8 +29,7 @@ constexpr std::size_t kCaps = 32; ///< that are tried, each √2 above the next
 /// 100 rays per patch. Regular iterations go on with one sequence, which lessens their noise by a sixth and loses hardly any
 /// light; global lines, where it lessens little, have another in each.
 std::uint64_t sequenceSeed(std::uint64_t seed, std::uint32_t stage, std::int32_t number) {
-    const auto key = philox({static_cast<std::uint32_t>(number), stage, 0, 0x53455155}, seed);
-    return (std::uint64_t{key[0]} << 32) | key[1];
+    return randomKey({static_cast<std::uint32_t>(number), stage, 0, 0x53455155}, seed);
 }
 
 constexpr std::uint32_t kShooting = 0, kRegular = 1, kGlobal = 2; ///< stages
@@ -40,10 +39,10 @@ double sumOfMagnitudes(const Rgb& colour) { return sum(RgbSum(glm::abs(colour)))
 
 } // namespace
 
-RelaxationRun::RelaxationRun(const SolverProblem& problem, const RayCaster& rays,
+RelaxationRun::RelaxationRun(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                              const StochasticRelaxationOptions& options)
     : problem_(problem),
-      mesh_(problem.mesh()),
+      mesh_(mesh),
       options_(options),
       local_(mesh_, rays, options.sampler),
       received_(problem.size()),
@@ -121,7 +120,7 @@ void RelaxationRun::shoot(double rays, std::uint64_t seed, Progress& progress,
         stage_.power = orderedSum(mesh_.size(), 0.0, [&](std::size_t i) {
             const Rgb received(received_.take(i) / area(i));
             light_[i] += received;
-            sender_[i].excess = mesh_.reflectance[i] * received;
+            sender_[i].excess = rho(i) * received;
             return area(i) * sum(RgbSum(sender_[i].excess));
         });
         stage_.shotRays = rays_;
@@ -133,8 +132,7 @@ void RelaxationRun::shoot(double rays, std::uint64_t seed, Progress& progress,
 
 /// Σ A ρ / Σ A, of the largest channel.
 double RelaxationRun::meanReflectance() const {
-    return orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * largest(mesh_.reflectance[i]); }) /
-           area_;
+    return orderedSum(mesh_.size(), 0.0, [&](std::size_t i) { return area(i) * largest(rho(i)); }) / area_;
 }
 
 /// Rays by power, a share of them evenly over the patches. The error Σ A_i var(E_i) of gathering Σ A_i n_i rays is least if n_i goes

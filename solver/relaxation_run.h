@@ -17,7 +17,8 @@ namespace lambert {
 class RelaxationRun {
 public:
     /// All must outlive it.
-    RelaxationRun(const SolverProblem& problem, const RayCaster& rays, const StochasticRelaxationOptions& options);
+    RelaxationRun(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
+                  const StochasticRelaxationOptions& options);
 
     /// Spends about `rays` rays, or what is left of them if an unfinished run was restored. After every iteration there is a
     /// state to keep(). Throws Cancelled, and what `afterIteration` throws.
@@ -61,8 +62,9 @@ private:
     double area(std::size_t i) const { return problem_.area(i); }
     Rgb direct(std::size_t i) const { return Rgb(problem_.direct(i)); }
     Rgb source(std::size_t i) const { return Rgb(problem_.source(i)); }
-    Rgb reflected(std::size_t i) const { return mesh_.reflectance[i] * light_[i]; }
-    Rgb radiosity(std::size_t i) const { return mesh_.emittedRadiosity[i] + reflected(i); }
+    const Rgb& rho(std::size_t i) const { return problem_.patches().reflectance[i]; }
+    Rgb reflected(std::size_t i) const { return rho(i) * light_[i]; }
+    Rgb radiosity(std::size_t i) const { return problem_.patches().emittedRadiosity[i] + reflected(i); }
     double meanReflectance() const;
 
     void begin();

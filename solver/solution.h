@@ -9,9 +9,6 @@
 
 namespace lambert {
 
-/// A sum or a result per channel, in double precision.
-using RgbSum = glm::dvec3;
-
 /// Every term of the energy balance is computed from its own definition, none from the others (watts or lumens,
 /// as the emission is given).
 struct EnergyBalance {

@@ -24,13 +24,9 @@ struct SolverTraits {
 constexpr std::array kSolvers{SolverTraits{SolverMethod::Jacobi, "jacobi"},
                               SolverTraits{SolverMethod::GaussSeidel, "gauss-seidel"},
                               SolverTraits{SolverMethod::Southwell, "southwell"},
-                              SolverTraits{SolverMethod::ConjugateGradient, "conjugate-gradient"},
-                              SolverTraits{SolverMethod::Stochastic, "stochastic"},
-                              SolverTraits{SolverMethod::RandomWalk, "random-walk"}};
+                              SolverTraits{SolverMethod::ConjugateGradient, "conjugate-gradient"}};
 
 } // namespace
-
-bool usesLines(SolverMethod method) { return method == SolverMethod::Stochastic || method == SolverMethod::RandomWalk; }
 
 std::optional<SolverMethod> solverByName(std::string_view name) {
     for (const SolverTraits& traits : kSolvers)
@@ -86,11 +82,8 @@ RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, cons
         return solveSouthwell(problem, rows, {o.tolerance}, progress, context);
     case SolverMethod::ConjugateGradient:
         return solveConjugateGradient(problem, rows, {o.tolerance}, progress, context);
-    case SolverMethod::Stochastic:
-    case SolverMethod::RandomWalk:
-        break;
     }
-    throw UsageError(fmt::format("the solver {} uses no form factors", nameOf(o.method)));
+    return {}; // not reached
 }
 
 } // namespace lambert

@@ -14,10 +14,7 @@ namespace lambert {
 
 /// The one place where a solver is made from its name and options: what a new one needs beside its own files is a line in the
 /// table and the switch of solver.cpp.
-enum class SolverMethod { Jacobi, GaussSeidel, Southwell, ConjugateGradient, Stochastic, RandomWalk };
-
-/// Whether it sends light along random lines, without form factors: see solveByLines().
-bool usesLines(SolverMethod method);
+enum class SolverMethod { Jacobi, GaussSeidel, Southwell, ConjugateGradient };
 
 std::optional<SolverMethod> solverByName(std::string_view name);
 std::string_view nameOf(SolverMethod method);

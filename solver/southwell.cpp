@@ -89,20 +89,6 @@ std::vector<RgbSum> Southwell::radiosity() const {
     return result;
 }
 
-std::vector<RgbSum> Southwell::displayedRadiosity() const {
-    double area = 0.0;
-    RgbSum reflected(0.0), unshot(0.0);
-    for (std::size_t i = 0; i < problem_.size(); ++i) {
-        area += problem_.area(i);
-        reflected += problem_.area(i) * problem_.reflectance(i);
-        unshot += problem_.area(i) * unshot_[i];
-    }
-    const RgbSum ambient = unshot / area / (RgbSum(1.0) - reflected / area);
-    std::vector<RgbSum> result = radiosity();
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] += problem_.reflectance(i) * ambient;
-    return result;
-}
-
 RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
                                  Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();

@@ -36,9 +36,6 @@ public:
     const std::vector<RgbSum>& irradiance() const { return irradiance_; } //!< #patches, E by what was shot
     std::vector<RgbSum> radiosity() const; //!< #patches, B_e + ρ E, unshot light included
 
-    /// The same and the ambient term: a guess at what the unshot light will become after all bounces. For display only.
-    std::vector<RgbSum> displayedRadiosity() const;
-
     /// Passes all that the next shot depends on to an archive, see SolverCheckpoint.
     template <typename Archive>
     void keep(Archive& archive) {

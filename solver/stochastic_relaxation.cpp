@@ -32,7 +32,7 @@ void check(const StochasticRelaxationOptions& o) {
 
 } // namespace
 
-StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const RayCaster& rays,
+StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                              const StochasticRelaxationOptions& options, Progress& progress,
                                              const SolverContext& context) {
     check(options);
@@ -41,7 +41,7 @@ StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const
     SubRunStatistics statistics(problem);
     StochasticSolution solution;
     {
-        RelaxationRun run(problem, rays, options);
+        RelaxationRun run(problem, mesh, rays, options);
         const auto state = [&](auto& archive) {
             statistics.keep(archive);
             archive(solution.unshot);

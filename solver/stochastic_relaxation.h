@@ -3,7 +3,7 @@
 #include "core/progress.h"
 #include "core/sample_points.h"
 #include "formfactors/isotropic_lines.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/problem.h"
 #include "solver/solver_checkpoint.h"
 #include "solver/stochastic_solution.h"
@@ -49,11 +49,11 @@ struct StochasticRelaxationOptions {
 /// stochastic algorithms for radiosity", PhD thesis, K. U. Leuven 1999; P. Dutré, K. Bala, P. Bekaert, Advanced Global
 /// Illumination, section 6.3.
 ///
-/// `rays` is of the scene of the problem's mesh. A checkpoint is offered the state after every iteration, 64 bytes per patch; what
+/// `rays` is of the scene of the problem's mesh. A checkpoint is offered the state after every iteration, 76 bytes per patch; what
 /// the context has to start from is of no use here.
 /// The same bits for the same mesh, options and seed, whatever the number of threads and wherever it was stopped and resumed.
 /// Throws UsageError for options out of range, Cancelled, what a checkpoint throws.
-StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const RayCaster& rays,
+StochasticSolution solveStochasticRelaxation(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                              const StochasticRelaxationOptions& options, Progress& progress,
                                              const SolverContext& context = {});
 

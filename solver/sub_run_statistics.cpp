@@ -3,6 +3,8 @@
 #include "core/random.h"
 #include "solver/ordered_sum.h"
 
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
@@ -15,30 +17,15 @@ namespace lambert {
 
 namespace {
 
-constexpr double kNormal95 = 1.6449; ///< quantile of the normal distribution
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 constexpr std::uint64_t kRaysPerPatch = 8; ///< of the first sub-runs
 constexpr std::uint64_t kFewestRays = 4096;
 
-/// 95 % quantile of the F distribution: the cube roots of both of its χ² are nearly normal. E. Paulson, "An approximate normalization
-/// of the analysis of variance distribution", Annals of Mathematical Statistics 13(2), 1942. Within 5 % for three degrees and more below.
-double upperF(double degrees, double degreesBelow) {
-    const double a = 2.0 / (9.0 * degrees);
-    const double b = 2.0 / (9.0 * degreesBelow);
-    const double z2 = kNormal95 * kNormal95;
-    const double p = 1.0 - a;
-    const double q = 1.0 - b;
-    const double below = q * q - z2 * b;
-    const double root = (p * q + kNormal95 * std::sqrt(p * p * b + q * q * a - z2 * a * b)) / below;
-    return root * root * root;
-}
-
-/// 5 % quantile of χ², divided by its degrees of freedom. E. B. Wilson, M. M. Hilferty, "The distribution of chi-square", PNAS 17(12), 1931.
-double lowerShare(double degrees) {
-    const double a = 2.0 / (9.0 * degrees);
-    const double root = std::max(1.0 - a - kNormal95 * std::sqrt(a), 0.1);
-    return root * root * root;
+/// As a float, so that it does not depend on how a processor's mathematical functions round.
+template <typename Distribution>
+double roundedQuantile(const Distribution& distribution, double probability) {
+    return static_cast<double>(static_cast<float>(boost::math::quantile(distribution, probability)));
 }
 
 template <typename Value>
@@ -124,9 +111,11 @@ double SubRunStatistics::deviationVariance() const {
 /// deviation, whose relative variance 2/n therefore tells n; and the ratio of error and estimate would have the F distribution.
 double SubRunStatistics::upperRelativeError() const {
     if (runs() < 3) return kInfinite;
-    const double variance = deviationVariance() / lowerShare(runs() - 2);
+    const int differences = runs() - 2;
+    const double variance =
+        deviationVariance() * differences / roundedQuantile(boost::math::chi_squared(differences), 0.05);
     const double degrees = std::clamp(2.0 / std::max(variance, 1e-9), 1.0, 3.0 * static_cast<double>(problem_.size()));
-    return relativeError() * std::sqrt(upperF(degrees, degrees * (runs() - 1)));
+    return relativeError() * std::sqrt(roundedQuantile(boost::math::fisher_f(degrees, degrees * (runs() - 1)), 0.95));
 }
 
 void SubRunStatistics::finish(StochasticSolution& solution) {
@@ -166,8 +155,7 @@ std::uint64_t SubRunSchedule::next(const SubRunStatistics& statistics) const {
 }
 
 std::uint64_t subRunSeed(std::uint64_t seed, int run) {
-    const auto key = philox({static_cast<std::uint32_t>(run), 0, 0, 0x53554252}, seed);
-    return (std::uint64_t{key[0]} << 32) | key[1];
+    return randomKey({static_cast<std::uint32_t>(run), 0, 0, 0x53554252}, seed);
 }
 
 } // namespace lambert

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/packet_width.h"
+#include "scene/rays/packet_width.h"
 
 #include <array>
 #include <cstdlib>

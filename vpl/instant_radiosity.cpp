@@ -75,8 +75,8 @@ std::vector<Receiver> patchReceivers(const PatchMesh& mesh, const RayCaster& ray
     std::vector<Receiver> receivers(mesh.size() * points);
     parallelFor(mesh.size(), 256, [&](std::size_t begin, std::size_t end, int) {
         for (std::size_t patch = begin; patch < end; ++patch) {
-            const auto key = philox({static_cast<std::uint32_t>(patch), 0, 0, 0x50504F49}, seed);
-            const SamplePoints samples(Sampler::Sobol, points, 2, (std::uint64_t{key[0]} << 32) | key[1]);
+            const SamplePoints samples(Sampler::Sobol, points, 2,
+                                       randomKey({static_cast<std::uint32_t>(patch), 0, 0, 0x50504F49}, seed));
             const PatchPoints surface(mesh, patch);
             const float lift = patchOriginOffset(rays, mesh, patch);
             for (std::uint32_t k = 0; k < points; ++k)
@@ -87,10 +87,9 @@ std::vector<Receiver> patchReceivers(const PatchMesh& mesh, const RayCaster& ray
     return receivers;
 }
 
-InstantRadiosity solveInstantRadiosity(const SolverProblem& problem, const RayCaster& rays,
+InstantRadiosity solveInstantRadiosity(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                        const InstantRadiosityOptions& options, Progress& progress) {
     checkInstantRadiosity(options);
-    const PatchMesh& mesh = problem.mesh();
     InstantRadiosity result;
     const VirtualPointLights traced = traceLights(rays, options.trace, progress);
     result.particles = traced.particles;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/problem.h"
 #include "vpl/gather.h"
 #include "vpl/trace_lights.h"
@@ -45,7 +45,7 @@ std::vector<Receiver> patchReceivers(const PatchMesh& mesh, const RayCaster& ray
 /// The light on patches by virtual point lights: E is E_0 of the problem plus the mean of what is gathered at points of the
 /// patch, B = B_e + ρ E. Walks see the textures of `rays`' scene, whose mesh the problem's is.
 /// The same whatever the number of threads. Throws UsageError as above, Cancelled.
-InstantRadiosity solveInstantRadiosity(const SolverProblem& problem, const RayCaster& rays,
+InstantRadiosity solveInstantRadiosity(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
                                        const InstantRadiosityOptions& options, Progress& progress);
 
 } // namespace lambert

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/polygon_points.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "scene/surface.h"
 #include "vpl/textured_emitter.h"
 

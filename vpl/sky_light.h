@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "vpl/receiver.h"
 
 #include <cstdint>

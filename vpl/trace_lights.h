@@ -2,7 +2,7 @@
 
 #include "core/progress.h"
 #include "core/sample_points.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "vpl/phong_lobe.h"
 #include "vpl/virtual_point_light.h"
 

@@ -16,17 +16,19 @@ namespace {
 using Quad = std::array<glm::vec3, 4>;
 
 BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
+    FormFactorLight method;
+    method.formFactors.transport.resolution = resolution;
+    method.solver.tolerance = 1e-6;
     BakeOptions options;
-    options.mesh.patches = patches;
-    options.formFactors.transport.resolution = resolution;
-    options.solver.tolerance = 1e-6;
+    options.solve.mesh.patches = patches;
+    options.solve.method = method;
     Progress progress;
     return bakeScene(scene, options, progress);
 }
 
 std::vector<ProbeReading> probed(const BakedScene& baked, std::span<const ProbePoint> points) {
     Progress progress;
-    return probeIrradiance(baked, {}, points, progress);
+    return probeIrradiance(baked, {}, {}, points, progress);
 }
 
 TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {

@@ -1,4 +1,5 @@
 #include "baking/exposure.h"
+#include "picture/srgb.h"
 
 #include <glm/ext/scalar_constants.hpp>
 #include <gtest/gtest.h>

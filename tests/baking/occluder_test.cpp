@@ -22,10 +22,11 @@ Scene roomWithBlackBox(bool occluder) {
 
 BakedScene bake(const Scene& scene, MeshOptions mesh) {
     BakeOptions options;
-    options.mesh = mesh;
-    options.formFactors.transport.method = TransportMethod::Hemicube; // auto judges patches by their neighbours in number
-    options.formFactors.transport.resolution = 32;
-    options.formFactors.transport.randomRotation = false; // it goes by the patches' numbers, and these differ
+    auto& light = std::get<FormFactorLight>(options.solve.method);
+    options.solve.mesh = mesh;
+    light.formFactors.transport.method = TransportMethod::Hemicube; // auto judges patches by their neighbours in number
+    light.formFactors.transport.resolution = 32;
+    light.formFactors.transport.randomRotation = false; // it goes by the patches' numbers, and these differ
     Progress progress;
     return bakeScene(scene, options, progress);
 }

@@ -1,9 +1,9 @@
 #include "baking/bake_scene.h"
-#include "baking/solution_file.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "sample_mesh.h"
 #include "scene/example_scenes.h"
+#include "solver/solution_file.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -27,10 +27,11 @@ const BakedScene& room() {
         Scene scene = roomWithBoxScene();
         for (Material& material : scene.materials) material.twoSided = true;
         BakeOptions options;
-        options.mesh.patches = 300;
-        options.formFactors.transport.resolution = 16;
-        options.solver.method = SolverMethod::Jacobi;
-        options.solver.keepBounces = true;
+        auto& light = std::get<FormFactorLight>(options.solve.method);
+        options.solve.mesh.patches = 300;
+        light.formFactors.transport.resolution = 16;
+        light.solver.method = SolverMethod::Jacobi;
+        light.solver.keepBounces = true;
         Progress progress;
         return bakeScene(scene, options, progress);
     }();
@@ -46,7 +47,8 @@ std::vector<Rgb> someErrors() {
 std::filesystem::path written(const std::string& name, const RadiositySolution& solution) {
     const std::filesystem::path path = temporaryFile(name);
     const std::vector<Rgb> errors = someErrors();
-    writeSolution({*room().scene, room().mesh, solution, errors, {"room.obj", "hemicube", "jacobi"}, "1.2"}, path);
+    writeSolution(
+        {*room().scene, room().mesh, room().optics, solution, errors, {"room.obj", "hemicube", "jacobi"}, "1.2"}, path);
     return path;
 }
 
@@ -59,8 +61,8 @@ TEST(SolutionFile, HoldsWhatWasSolvedInSinglePrecision) {
     EXPECT_EQ(mesh.positions, baked.mesh.positions);
     EXPECT_EQ(mesh.corners, baked.mesh.corners);
     EXPECT_EQ(mesh.area, baked.mesh.area);
-    EXPECT_EQ(mesh.reflectance, baked.mesh.reflectance);
-    EXPECT_EQ(mesh.emittedRadiosity, baked.mesh.emittedRadiosity);
+    EXPECT_EQ(read.meshed.optics.reflectance, baked.optics.reflectance);
+    EXPECT_EQ(read.meshed.optics.emittedRadiosity, baked.optics.emittedRadiosity);
     EXPECT_EQ(mesh.material, baked.mesh.material);
     EXPECT_EQ(read.solution.covered, baked.solution.covered);
     EXPECT_EQ(read.solution.bounces, baked.solution.bounces);
@@ -87,7 +89,8 @@ TEST(SolutionFile, IsTheSameWhenItIsReadAndWrittenAgain) {
     const std::filesystem::path first = written("first.glb", room().solution);
     const StoredSolution read = readSolution(first);
     const std::filesystem::path second = temporaryFile("second.glb");
-    writeSolution({*read.meshed.scene, read.meshed.mesh, read.solution, read.standardError, read.origin, "1.2"},
+    writeSolution({*read.meshed.scene, read.meshed.mesh, read.meshed.optics, read.solution, read.standardError,
+                   read.origin, "1.2"},
                   second);
     EXPECT_EQ(contentOf(first), contentOf(second));
 }

@@ -1,5 +1,6 @@
 #include "baking/exposure.h"
 #include "baking/write_baked.h"
+#include "picture/srgb.h"
 #include "tests/baking/sample_mesh.h"
 
 #include <gtest/gtest.h>

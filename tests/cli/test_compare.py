@@ -160,7 +160,7 @@ class WhatIsWrong(CompareTest):
 
     def test_a_reference_of_another_mesh(self):
         matrix = self.write("two.csv", "0,1\n1,0\n")
-        self.refuse(INPUT, "found 2 patches, the scene has", DATA / "cube6.obj", "-o", self.folder / "out", "--patches", "60",
+        self.refuse(INPUT, "found a matrix of 2 patches, the scene has", DATA / "cube6.obj", "-o", self.folder / "out", "--patches", "60",
                     "--reference", matrix)
 
     def test_without_gnuplot_nothing_is_begun(self):

@@ -228,7 +228,7 @@ class Checkpoint(Solution):
 
     def test_of_another_solver_is_a_usage_error(self):
         checkpoint = self.folder / "state"
-        solver_state = self.write("state.solver", "Lambert solver checkpoint 1: of something else\n")
+        solver_state = self.write("state.solver", "Lambert solver checkpoint 2: of something else\n")
         command = ("bake", BOX, *SMALL, "--json", self.folder / "r.json", "--checkpoint", checkpoint)
         for more in ((), ("--resume",)):
             done = run(*command, *more)

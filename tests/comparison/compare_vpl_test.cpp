@@ -1,7 +1,7 @@
 #include "comparison/compare_vpl.h"
 
-#include "comparison/instant_radiosity_method.h"
-#include "scene/scene_reader.h"
+#include "vpl/instant_radiosity_method.h"
+#include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -34,6 +34,7 @@ VplComparison compared(const std::string& name, const InstantRadiosityChoice& me
     VplComparisonOptions options;
     options.methods = {std::make_shared<InstantRadiosityMethod>(method)};
     options.effort = choice.vpls;
+    options.ladder.emplace(); // no other
     options.seeds = choice.seeds;
     options.perBounce = choice.bounces > 0;
     options.gathering.cells = 64;

@@ -78,11 +78,12 @@ TEST(FormFactorErrors, RadiosityIsComparedWithTheReflectedLight) {
     PatchMesh mesh;
     mesh.area = {1.0F, 3.0F};
     mesh.corners.resize(2);
-    mesh.emittedRadiosity = {Rgb(100.0F), Rgb(0.0F)};
+    PatchOptics optics;
+    optics.emittedRadiosity = {Rgb(100.0F), Rgb(0.0F)};
     const std::vector<RgbSum> reference{RgbSum(101.0), RgbSum(2.0)};
     const std::vector<RgbSum> found{RgbSum(101.5), RgbSum(2.1)};
     // Reflected: 1 and 2; errors 0.5 and 0.1; areas 1 and 3.
-    EXPECT_NEAR(radiosityError(mesh, found, reference), std::sqrt((0.25 + 0.03) / (1.0 + 12.0)), 1e-12);
+    EXPECT_NEAR(radiosityError(mesh, optics, found, reference), std::sqrt((0.25 + 0.03) / (1.0 + 12.0)), 1e-12);
 }
 
 TEST(FormFactorErrors, FactorsAreSortedBySize) {

@@ -1,10 +1,10 @@
-#include "comparison/colour_scale.h"
-#include "comparison/figure_text.h"
-#include "comparison/gnuplot.h"
-#include "comparison/html.h"
-#include "comparison/html_page.h"
-#include "comparison/plot.h"
-#include "comparison/scale_bar.h"
+#include "comparison/page/colour_scale.h"
+#include "comparison/page/figure_text.h"
+#include "comparison/page/gnuplot.h"
+#include "comparison/page/html.h"
+#include "comparison/page/html_page.h"
+#include "comparison/page/plot.h"
+#include "comparison/page/scale_bar.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>

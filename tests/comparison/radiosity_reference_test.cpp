@@ -1,8 +1,8 @@
 #include "comparison/radiosity_reference.h"
 
 #include "comparison/compare_vpl.h"
-#include "comparison/instant_radiosity_method.h"
-#include "scene/scene_reader.h"
+#include "vpl/instant_radiosity_method.h"
+#include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ TEST(RadiosityReference, InstantRadiosityWithCompensationAgreesWithPathTracing) 
     const PathTraced& traced = cornell.traced;
     const InstantRadiosityMethod method({.compensate = true});
     Progress progress;
-    const MethodLight light = method.light(*cornell.scene.rays, traced.receivers, 1e5, 1, progress);
+    const MethodLight light = method.light(*cornell.scene.rays, {traced.receivers}, 1e5, 1, progress);
     const LightErrors file = lightErrors(traced.weight, traced.irradiance, light.irradiance);
     const LightErrors ours = lightErrors(traced.weight, cornell.light.irradiance, light.irradiance);
     std::printf("from path tracing %.3f %%, from patch radiosity %.3f %%\n", 100.0 * file.overall.relativeRms,

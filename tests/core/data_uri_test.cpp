@@ -14,5 +14,19 @@ TEST(DataUri, Base64OfRfc4648) {
     EXPECT_EQ(dataUri("a/b", "\xFF\xFE\xFB"), "data:a/b;base64,//77");
 }
 
+TEST(DataUri, Base64IsDecodedUpToTheFirstOtherCharacter) {
+    const auto decoded = [](std::string_view text) {
+        const auto bytes = decodedBase64(text);
+        return std::string(bytes.begin(), bytes.end());
+    };
+    for (const std::string content : {"", "f", "fo", "foo", "foob", "fooba", "foobar", "\xFF\xFE\xFB"}) {
+        const std::string text = dataUri("", content).substr(std::string_view("data:;base64,").size());
+        EXPECT_EQ(decoded(text), content);
+        EXPECT_EQ(decoded(text.substr(0, text.find('='))), content) << "unpadded";
+    }
+    EXPECT_EQ(decoded("Zm9v\nYmFy"), "foo");
+    EXPECT_EQ(decoded("Z"), "");
+}
+
 } // namespace
 } // namespace lambert

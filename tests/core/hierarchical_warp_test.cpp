@@ -79,7 +79,7 @@ TEST(HierarchicalWarp, KeepsPointsWellSpread) {
     constexpr int kPoints = 1 << 14;
     std::vector<int> counts(image.size(), 0);
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        const glm::dvec2 p = warp.warp({hammersley(i, kPoints, 0), hammersley(i, kPoints, 1)});
+        const glm::dvec2 p = warp.warp({static_cast<double>(i) / kPoints, halton(i, 0)});
         ++counts[static_cast<std::size_t>(p.y) * kWidth + static_cast<std::size_t>(p.x)];
     }
     double squares = 0.0, variance = 0.0;

@@ -1,4 +1,5 @@
-#include "core/discrepancy.h"
+#include "discrepancy.h"
+
 #include "core/low_discrepancy.h"
 #include "core/sample_points.h"
 #include "core/vector_warps.h"
@@ -35,11 +36,6 @@ TEST(Halton, BeginsAtOneHalfAndOneThird) {
     EXPECT_EQ(halton(1, 0), 0.5);
     EXPECT_DOUBLE_EQ(halton(1, 1), 1.0 / 3.0);
     EXPECT_EQ(prime(255), 1619U);
-}
-
-TEST(Hammersley, CountsAlongItsFirstAxis) {
-    EXPECT_EQ(hammersley(3, 8, 0), 0.375);
-    EXPECT_EQ(hammersley(3, 8, 1), 0.75);
 }
 
 TEST(Sobol, FourDimensionsAtOnceAreTheSame) {

@@ -1,7 +1,7 @@
 #include "core/whole_file.h"
 
 #include "core/error.h"
-#include "tests/scene/temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,21 @@ std::vector<std::string> namesIn(const fs::path& folder) {
     return names;
 }
 
-std::string temporaryName(std::size_t number) {
-    return ".lambert-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp";
+bool isTemporary(const std::string& name) { return name.starts_with(".lambert-") && name.ends_with(".tmp"); }
+
+/// So many that the last ones have temporary names: more than are kept open without names.
+constexpr std::size_t kMany = 258;
+
+/// `kMany` files "0", "1", ... whose content is `prefix` and their number, with `during` called while the last one is written.
+std::vector<FileStream> manyFiles(const fs::path& folder, const std::string& prefix,
+                                  const std::function<void()>& during) {
+    std::vector<FileStream> files;
+    for (std::size_t k = 0; k < kMany; ++k)
+        files.push_back({folder / std::to_string(k), [=](std::ostream& stream) {
+                             stream << prefix << k << std::flush;
+                             if (k == kMany - 1) during();
+                         }});
+    return files;
 }
 
 std::string failureOf(const std::function<void()>& action) {
@@ -79,40 +92,45 @@ bool hasNamelessFiles(const fs::path& folder) {
 TEST(WriteWholeFile, HasNoNameUntilItIsWhole) {
     const TemporaryFolder folder;
     const fs::path file = folder.write("result.csv", "old");
-    std::vector<std::string> expected{"result.csv"};
-    if (!hasNamelessFiles(folder.path())) expected.insert(expected.begin(), temporaryName(0));
+    const std::ptrdiff_t expected = hasNamelessFiles(folder.path()) ? 0 : 1;
     writeWholeFile(file, [&](std::ostream& stream) {
         stream << "half of the new content" << std::flush;
-        EXPECT_EQ(namesIn(folder.path()), expected);
+        const std::vector<std::string> names = namesIn(folder.path());
+        EXPECT_EQ(std::count_if(names.begin(), names.end(), isTemporary), expected);
+        EXPECT_EQ(names.size(), static_cast<std::size_t>(1 + expected));
         EXPECT_EQ(contentOf(file), "old");
     });
     EXPECT_EQ(contentOf(file), "half of the new content");
     EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
 }
 
-// More files at a time than are kept open without names: the last ones have temporary names, of which none is left.
+// Of the temporary names that the last files have meanwhile none is left.
 TEST(WriteWholeFiles, AlsoWithTemporaryNames) {
     const TemporaryFolder folder;
-    std::vector<FileStream> files;
-    std::vector<std::string> temporary;
-    for (std::size_t k = 0; k < 300; ++k)
-        files.push_back({folder.path() / std::to_string(k), [&, k](std::ostream& stream) {
-                             stream << k;
-                             for (const std::string& name : namesIn(folder.path()))
-                                 if (k == 299 && name == temporaryName(k)) temporary.push_back(name);
-                         }});
-    writeWholeFiles(files);
-    EXPECT_EQ(temporary, std::vector<std::string>{temporaryName(299)});
-    EXPECT_EQ(namesIn(folder.path()).size(), 300U);
-    for (std::size_t k = 0; k < 300; ++k) EXPECT_EQ(contentOf(folder.path() / std::to_string(k)), std::to_string(k));
+    bool temporary = false;
+    writeWholeFiles(manyFiles(folder.path(), "", [&] {
+        const std::vector<std::string> names = namesIn(folder.path());
+        temporary = std::any_of(names.begin(), names.end(), isTemporary);
+    }));
+    EXPECT_TRUE(temporary);
+    EXPECT_EQ(namesIn(folder.path()).size(), kMany);
+    for (std::size_t k = 0; k < kMany; ++k) EXPECT_EQ(contentOf(folder.path() / std::to_string(k)), std::to_string(k));
 }
 
-TEST(WriteWholeFile, TakesTheNameThatAKilledProcessLeft) {
+// As two processes of one number do on machines that share a folder: each file gets its own content, not the other's.
+TEST(WriteWholeFiles, KeepApartWhatIsWrittenAtOneTimeToOneFolder) {
     const TemporaryFolder folder;
-    folder.write(temporaryName(0), "left");
-    writeWholeFile(folder.path() / "result.csv", "new");
-    EXPECT_EQ(contentOf(folder.path() / "result.csv"), "new");
-    EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"result.csv"});
+    writeWholeFiles(manyFiles(folder.path(), "outer ", [&] {
+        std::vector<FileStream> inner = manyFiles(folder.path(), "inner ", [] {});
+        for (FileStream& file : inner) file.path += " too";
+        writeWholeFiles(inner);
+    }));
+    for (std::size_t k = 0; k < kMany; ++k) {
+        const std::string name = std::to_string(k);
+        EXPECT_EQ(contentOf(folder.path() / name), "outer " + name);
+        EXPECT_EQ(contentOf(folder.path() / (name + " too")), "inner " + name);
+    }
+    EXPECT_EQ(namesIn(folder.path()).size(), 2 * kMany);
 }
 
 TEST(WriteWholeFile, HasThePermissionsOfAnyNewFile) {

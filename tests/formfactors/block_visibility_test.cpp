@@ -7,7 +7,7 @@
 #include "meshing/patch_offset.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
 

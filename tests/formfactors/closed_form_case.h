@@ -5,7 +5,8 @@
 #include "formfactors/closed_form_method.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
-#include "scene/example_scenes.h"
+#include "polygon_factor.h"
+#include "tests/scene/grid_scene.h"
 
 #include <glm/geometric.hpp>
 

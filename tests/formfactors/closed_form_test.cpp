@@ -1,5 +1,7 @@
 #include "formfactors/closed_form.h"
 
+#include "polygon_factor.h"
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "formfactors/closed_form.h"
 #include "formfactors/form_factor_matrix.h"
 #include "formfactors/form_factor_method.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
+#include "polygon_factor.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <cmath>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "formfactors/occluders.h"
 
 #include "meshing/prepare.h"
-#include "scene/example_scenes.h"
+#include "tests/scene/grid_scene.h"
 
 #include <gtest/gtest.h>
 

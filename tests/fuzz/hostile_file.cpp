@@ -2,13 +2,13 @@
 
 #include "sound_scene.h"
 
-#include "baking/solution_file.h"
 #include "comparison/compare_bakes.h"
 #include "core/error.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
-#include "scene/ray_caster.h"
-#include "scene/scene_reader.h"
+#include "scene/rays/ray_caster.h"
+#include "scene/reading/scene_reader.h"
+#include "solver/solution_file.h"
 
 #include <glm/geometric.hpp>
 #include <unistd.h>
@@ -134,8 +134,9 @@ void readSolutionFile(const ScratchFolder& folder, std::string_view input) {
     const StoredSolution solution = readSolution(folder.write("solution.glb", input));
     const Scene& scene = *solution.meshed.scene;
     if (!scene.polygons.empty()) RayCaster(scene).bounds();
-    const SolutionRecord record{scene,           solution.meshed.mesh, solution.solution, solution.standardError,
-                                solution.origin, "of a test"};
+    const SolutionRecord record{
+        scene,           solution.meshed.mesh, solution.meshed.optics, solution.solution, solution.standardError,
+        solution.origin, "of a test"};
     const auto again = folder.write("again.glb", {});
     writeSolution(record, again);
     const BakeComparison comparison = compareBakes(solution, readSolution(again), Quantity::Radiosity);

@@ -11,8 +11,6 @@ namespace lambert {
 
 namespace {
 
-bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 bool isWithin(const glm::vec3& v, float lowest, float highest) {
     return isFinite(v) && glm::all(glm::greaterThanEqual(v, glm::vec3(lowest))) &&
            glm::all(glm::lessThanEqual(v, glm::vec3(highest)));
@@ -104,6 +102,7 @@ void requireSoundTexture(const Texture& texture) {
 }
 
 void requireSoundMesh(const Scene& scene, const PatchMesh& mesh) {
+    const PatchOptics optics = patchOptics(scene, mesh);
     require(mesh.frontCount <= mesh.size(), "fronts are patches");
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         for (int k = 0; k < mesh.cornerCount(i); ++k) {
@@ -112,8 +111,8 @@ void requireSoundMesh(const Scene& scene, const PatchMesh& mesh) {
         }
         require(mesh.area[i] > 0.0F && std::isfinite(mesh.area[i]), "a patch has a finite area");
         require(isUnit(mesh.normal[i]) && isFinite(mesh.centroid[i]), "a patch has a unit normal and a centroid");
-        require(isWithin(mesh.reflectance[i], 0.0F, 0.99F), "a patch's reflectance is from 0 to 0.99");
-        require(isWithin(mesh.emittedRadiosity[i], 0.0F, 3.4e38F), "a patch's emission is finite");
+        require(isWithin(optics.reflectance[i], 0.0F, 0.99F), "a patch's reflectance is from 0 to 0.99");
+        require(isWithin(optics.emittedRadiosity[i], 0.0F, 3.4e38F), "a patch's emission is finite");
         require(mesh.polygon[i] < scene.polygons.size() && mesh.material[i] < scene.materials.size(),
                 "a patch belongs to a polygon and has a material");
     }

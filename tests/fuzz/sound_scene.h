@@ -1,7 +1,7 @@
 #pragma once
 
-#include "meshing/patch_mesh.h"
-#include "scene/ray_caster.h"
+#include "meshing/patch_optics.h"
+#include "scene/rays/ray_caster.h"
 #include "scene/scene.h"
 
 namespace lambert {

@@ -30,7 +30,7 @@ std::vector<double> hiddenAreas(const Scene& scene, std::size_t patches) {
     options.patches = patches;
     const PatchMesh mesh = buildPatchMesh(scene, options, progress);
     const RayCaster rays(scene);
-    const std::vector<bool> hidden = findHiddenPatches(rays, mesh);
+    const std::vector<bool> hidden = findHiddenPatches(rays, mesh, patchOptics(scene, mesh));
     EXPECT_EQ(hidden.size(), mesh.size());
     std::vector<double> areas(scene.polygons.size(), 0.0);
     for (std::size_t i = 0; i < mesh.size(); ++i)

@@ -1,10 +1,11 @@
 #include "meshing/near_contacts.h"
 
 #include "mesh_checks.h"
+#include "meshing/patch_optics.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
 #include "sample_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -107,12 +108,13 @@ TEST(NearContacts, NoPatchReachesAcrossTheOutlineOfALampBelowTheCeiling) {
 /// were even. What differs from the scene's own light is the mesh's error.
 double meanIrradiance(const Scene& scene, const PatchMesh& mesh, std::size_t walks, std::uint64_t seed) {
     const RayCaster rays(scene);
+    const PatchOptics optics = patchOptics(scene, mesh);
     std::mt19937_64 random(seed);
     const auto uniform = [&] { return static_cast<float>(random() >> 40) * 0x1p-24F; };
     std::vector<double> upTo;
     double power = 0.0, area = 0.0;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        upTo.push_back(power += static_cast<double>(mesh.area[i] * mesh.emittedRadiosity[i].x));
+        upTo.push_back(power += static_cast<double>(mesh.area[i] * optics.emittedRadiosity[i].x));
         if (mesh.material[i] == 0) area += static_cast<double>(mesh.area[i]);
     }
     std::size_t arrivals = 0;
@@ -141,7 +143,7 @@ double meanIrradiance(const Scene& scene, const PatchMesh& mesh, std::size_t wal
             if (!hit->front) met = mesh.lookup.backPatch(hit->polygon, met);
             if (met == kNone) break;
             arrivals += mesh.material[met] == 0 ? 1 : 0;
-            if (uniform() >= mesh.reflectance[met].x) break;
+            if (uniform() >= optics.reflectance[met].x) break;
             patch = met;
         }
     }

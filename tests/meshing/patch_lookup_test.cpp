@@ -1,7 +1,7 @@
 #include "mesh_checks.h"
 #include "sample_scenes.h"
 
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 #include <glm/geometric.hpp>
 

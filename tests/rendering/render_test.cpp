@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "rendering/camera_rays.h"
-#include "rendering/tone_mapping.h"
+#include "picture/camera_rays.h"
+#include "picture/tone_mapping.h"
 #include "scene/environment.h"
 #include "tests/rendering/box_scene.h"
 

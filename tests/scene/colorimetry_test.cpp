@@ -1,4 +1,4 @@
-#include "scene/colorimetry.h"
+#include "scene/mgf/colorimetry.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

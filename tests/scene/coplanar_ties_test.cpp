@@ -1,6 +1,7 @@
 #include "scene/coplanar_pairs.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
+#include "tests/scene/grid_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

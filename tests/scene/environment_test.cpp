@@ -1,12 +1,12 @@
 #include "core/error.h"
 #include "core/random.h"
+#include "picture/image.h"
 #include "scene/environment.h"
 #include "scene/sky.h"
-#include "temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
-#include <OpenImageIO/imageio.h>
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -136,11 +136,7 @@ TEST(Sky, TheSunIsAsBrightAsTheAirIsThin) {
 TEST(ReadEnvironment, ReadsExrAndNamesWhatIsMissingOrBroken) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "sky.exr";
-    const std::vector<float> pixels{0, 0, 0, 0, 0, 0, 1, 2, 50000, 0, 0, 0};
-    auto output = OIIO::ImageOutput::create(path.string());
-    ASSERT_TRUE(output->open(path.string(), OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT)));
-    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
-    output->close();
+    writeImage({2, 2, {Rgb(0.0F), Rgb(0.0F), Rgb(1, 2, 50000), Rgb(0.0F)}}, path, 0.0F);
     const Environment sky = readEnvironment(path);
     EXPECT_EQ(sky.radiance(skyDirection(270.0, -45.0)), Rgb(1, 2, 50000));
     EXPECT_FALSE(sky.isDark());

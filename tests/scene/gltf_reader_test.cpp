@@ -278,6 +278,33 @@ TEST_F(GltfReader, RejectsMembersOfAWrongTypeWithTheirPath) {
     expectError(camera, "/cameras/0/perspective/yfov: found 4");
 }
 
+TEST_F(GltfReader, RejectsValuesThatTheFormatDoesNotHaveEvenWhereNothingUsesThem) {
+    expectErrorAt("/accessors/2", R"({"componentType": 5126, "count": 1, "type": "VEC5"})",
+                  "/accessors/2/type: found \"VEC5\", allowed SCALAR, VEC2 to VEC4 or MAT2 to MAT4");
+    for (const std::string type : {"5119", "5131", "\"5126\""})
+        expectErrorAt("/accessors/2", R"({"count": 1, "type": "VEC3", "componentType": )" + type + "}",
+                      "/accessors/2/componentType: found " + type + ", allowed an integer of 5120 to 5130");
+    for (const std::string stride : {"14", "256", "4294967296"})
+        expectErrorAt("/bufferViews/2", R"({"buffer": 0, "byteLength": 1, "byteStride": )" + stride + "}",
+                      "/bufferViews/2/byteStride: found " + stride + ", allowed a multiple of 4 from 0 to 252");
+    expectErrorAt("/cameras/0", R"({"type": "fisheye"})",
+                  "/cameras/0/type: found \"fisheye\", allowed \"perspective\" or \"orthographic\"");
+    expectErrorAt("/cameras/0", R"({"type": "perspective"})",
+                  "/cameras/0/perspective: found nothing, allowed an object: the type is \"perspective\"");
+    expectErrorAt("/cameras/0", R"({"type": "orthographic", "perspective": {"yfov": 1, "znear": 1}})",
+                  "/cameras/0/orthographic: found nothing, allowed an object");
+    expectErrorAt("/cameras/0", R"({"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 2}})",
+                  "/cameras/0/orthographic/znear: found nothing, allowed a number");
+    expectErrorAt("/extensions/KHR_lights_punctual/lights/0", R"({"type": "spot"})",
+                  "/extensions/KHR_lights_punctual/lights/0/spot: found nothing, allowed an object");
+
+    Square square; // of doubles, which an extension has
+    square["/accessors/2"] = {{"componentType", 5130}, {"count", 1}, {"type", "MAT4"}};
+    EXPECT_EQ(totalArea(read(square).scene), 1.0);
+    square["/meshes/0/primitives/0/attributes/POSITION"] = 2;
+    expectError(square, "/accessors/2: found 5130 MAT4, allowed FLOAT VEC3");
+}
+
 TEST_F(GltfReader, RefusesRequiredExtensionsThatItDoesNotKnowByName) {
     for (const char* name : {"X_new", "MSFT_lod", "KHR_materials_diffuse_transmission"})
         expectErrorAt("/extensionsRequired", json{name}.dump(),

@@ -2,7 +2,7 @@
 
 #include "gltf_square.h"
 #include "reader_checks.h"
-#include "temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lambert {
 

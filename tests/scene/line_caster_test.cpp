@@ -1,10 +1,10 @@
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 
 #include "core/random.h"
 #include "core/warps.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
-#include "scene/scene_reader.h"
+#include "scene/rays/ray_caster.h"
+#include "scene/reading/scene_reader.h"
 
 #include <gtest/gtest.h>
 

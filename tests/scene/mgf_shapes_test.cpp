@@ -1,4 +1,4 @@
-#include "scene/mgf_shapes.h"
+#include "scene/mgf/shapes.h"
 
 #include "scene/scene.h"
 

@@ -1,5 +1,5 @@
 #include "reader_checks.h"
-#include "temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 #include <fmt/format.h>
 

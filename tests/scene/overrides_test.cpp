@@ -3,8 +3,8 @@
 #include "core/error.h"
 #include "scene/example_scenes.h"
 #include "scene/name_match.h"
-#include "scene/overrides_file.h"
-#include "temporary_folder.h"
+#include "scene/reading/overrides_file.h"
+#include "tests/core/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

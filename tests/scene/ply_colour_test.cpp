@@ -1,3 +1,4 @@
+#include "picture/srgb.h"
 #include "ply_test.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "scene/example_scenes.h"
 #include "scene/polygon_points.h"
 #include "scene/punctual_light.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "core/random.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 
 #include <gtest/gtest.h>
 

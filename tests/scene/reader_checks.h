@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/error.h"
-#include "scene/scene_reader.h"
-#include "temporary_folder.h"
+#include "scene/reading/scene_reader.h"
+#include "tests/core/temporary_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

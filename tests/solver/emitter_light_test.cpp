@@ -60,8 +60,9 @@ struct Lit {
         MeshOptions options;
         options.patches = patches;
         mesh = buildPatchMesh(scene, options, progress);
+        optics = patchOptics(scene, mesh);
     }
-    EmitterLight light(std::uint64_t seed = 1) const { return {rays, mesh, seed}; }
+    EmitterLight light(std::uint64_t seed = 1) const { return {rays, mesh, optics, seed}; }
 
     double power(const std::vector<RgbSum>& irradiance) const {
         double sum = 0.0;
@@ -69,13 +70,14 @@ struct Lit {
         return sum;
     }
     double emitted() const {
-        return power(std::vector<RgbSum>(mesh.emittedRadiosity.begin(), mesh.emittedRadiosity.end()));
+        return power(std::vector<RgbSum>(optics.emittedRadiosity.begin(), optics.emittedRadiosity.end()));
     }
 
     Progress progress;
     Scene scene;
     RayCaster rays;
     PatchMesh mesh;
+    PatchOptics optics;
 };
 
 Scene room(float size, const std::vector<Material>& lamp) {
@@ -102,7 +104,7 @@ TEST_P(LampSizes, SphereShinesAsFarAndAsNearAsItsTriangles) {
     for (glm::vec3& p : scene.positions) p = rotated(p);
     const Lit lit(scene);
     const EmitterLight light = lit.light();
-    const EmitterTree tree(lit.rays, lit.mesh);
+    const EmitterTree tree(lit.rays, lit.mesh, lit.optics);
     EXPECT_EQ(tree.triangles().size(), 2U * 32U * 15U); // 32 around, 16 rings, of which the two at the poles have half
     std::uint32_t index = 0;
     for (const glm::vec3 place :
@@ -188,7 +190,7 @@ TEST(EmitterLight, ContactWithALampIsDark) {
     const RayCaster rays(scene);
     Progress progress;
     const PatchMesh mesh = buildPatchMesh(scene, {}, progress);
-    const EmitterLight light(rays, mesh, 1);
+    const EmitterLight light(rays, mesh, patchOptics(scene, mesh), 1);
     EXPECT_EQ(light.irradiance({0.7F, 0, 0.7F}, {0, 1, 0}, rays.originOffset(0.1F), 0, 256).irradiance.x, 0.0);
 }
 
@@ -198,12 +200,12 @@ INSTANTIATE_TEST_SUITE_P(All, EmittersApart, deterministicSolvers(), solverTestN
 TEST_P(EmittersApart, SolutionIsThatOfTheFormFactors) {
     const SceneCase& c = sceneCase("cornell_box.obj", 500, hemicubes(64));
     Progress progress;
-    const auto emitted = EmitterLight(c.rays, c.mesh, 1).irradiance(c.mesh, progress);
+    const auto emitted = EmitterLight(c.rays, c.mesh, c.optics, 1).irradiance(c.mesh, progress);
     StoredRows rows(c.matrix);
     SolverOptions options;
     options.method = GetParam();
     options.tolerance = 1e-7;
-    const RadiositySolution apart = solve(SolverProblem(c.mesh, {}, emitted), rows, options, progress);
+    const RadiositySolution apart = solve(SolverProblem({c.mesh, c.optics}, {}, emitted), rows, options, progress);
     const RadiositySolution whole = c.solved(GetParam());
     // What the lamp emits is the same; direct light is that of points instead of one hemicube of so few pixels.
     EXPECT_EQ(apart.energy.emitted, whole.energy.emitted);
@@ -215,7 +217,7 @@ TEST_P(EmittersApart, SolutionIsThatOfTheFormFactors) {
             EXPECT_NEAR(found.at(name)[channel], expected[channel], 0.01 * expected[channel]) << name;
     for (std::size_t i = 0; i < c.mesh.size(); ++i) {
         const RgbSum expected =
-            RgbSum(c.mesh.emittedRadiosity[i]) + RgbSum(c.mesh.reflectance[i]) * apart.irradiance[i];
+            RgbSum(c.optics.emittedRadiosity[i]) + RgbSum(c.optics.reflectance[i]) * apart.irradiance[i];
         EXPECT_NEAR(apart.radiosity[i].x, expected.x, 1e-9 * expected.x + 1e-12);
     }
 }
@@ -223,16 +225,16 @@ TEST_P(EmittersApart, SolutionIsThatOfTheFormFactors) {
 TEST(EmittersApartByJacobi, FirstBounceIsTheReflectedDirectLight) {
     const SceneCase& c = sceneCase("cornell_box.obj", 500, hemicubes(64));
     Progress progress;
-    const auto emitted = EmitterLight(c.rays, c.mesh, 1).irradiance(c.mesh, progress);
+    const auto emitted = EmitterLight(c.rays, c.mesh, c.optics, 1).irradiance(c.mesh, progress);
     StoredRows rows(c.matrix);
     SolverOptions options;
     options.method = SolverMethod::Jacobi;
     options.bounces = 2;
     options.keepBounces = true;
-    const RadiositySolution solution = solve(SolverProblem(c.mesh, {}, emitted), rows, options, progress);
+    const RadiositySolution solution = solve(SolverProblem({c.mesh, c.optics}, {}, emitted), rows, options, progress);
     ASSERT_EQ(solution.bounces.size(), 2U);
     for (std::size_t i = 0; i < c.mesh.size(); ++i) {
-        const RgbSum first = RgbSum(c.mesh.reflectance[i]) * emitted[i];
+        const RgbSum first = RgbSum(c.optics.reflectance[i]) * emitted[i];
         EXPECT_NEAR(static_cast<double>(solution.bounces[0][i].x), first.x, 1e-6 * first.x); // floats
     }
 }

@@ -3,7 +3,7 @@
 #include "scene_case.h"
 
 #include "formfactors/global_lines.h"
-#include "scene/line_caster.h"
+#include "scene/rays/line_caster.h"
 #include "solver/stochastic_relaxation.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ struct TracedBox {
         StochasticRelaxationOptions options;
         options.lines = RelaxationLines::Global;
         options.rays = 100'000;
-        byLines = c.means(solveStochasticRelaxation(SolverProblem(c.mesh), c.rays, options, progress).irradiance);
+        byLines = c.means(
+            solveStochasticRelaxation(SolverProblem({c.mesh, c.optics}), c.mesh, c.rays, options, progress).irradiance);
     }
 };
 

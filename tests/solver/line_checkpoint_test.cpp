@@ -17,18 +17,22 @@ namespace {
 /// A solver with all its options.
 struct Variant {
     std::string name;
-    std::function<StochasticSolution(const SolverProblem&, const RayCaster&, Progress&, const SolverContext&)> solve;
+    std::function<StochasticSolution(const SolverProblem&, const PatchMesh&, const RayCaster&, Progress&,
+                                     const SolverContext&)>
+        solve;
 };
 
 Variant relaxation(std::string name, StochasticRelaxationOptions options) {
-    return {std::move(name), [options](const auto& problem, const auto& rays, auto& progress, const auto& context) {
-                return solveStochasticRelaxation(problem, rays, options, progress, context);
+    return {std::move(name),
+            [options](const auto& problem, const auto& mesh, const auto& rays, auto& progress, const auto& context) {
+                return solveStochasticRelaxation(problem, mesh, rays, options, progress, context);
             }};
 }
 
 Variant walks(std::string name, RandomWalkOptions options) {
-    return {std::move(name), [options](const auto& problem, const auto& rays, auto& progress, const auto& context) {
-                return solveRandomWalks(problem, rays, options, progress, context);
+    return {std::move(name),
+            [options](const auto& problem, const auto& mesh, const auto& rays, auto& progress, const auto& context) {
+                return solveRandomWalks(problem, mesh, rays, options, progress, context);
             }};
 }
 
@@ -66,7 +70,7 @@ void expectSameBits(const StochasticSolution& a, const StochasticSolution& b) {
     for (std::size_t k = 0; k < a.history.size(); ++k) EXPECT_EQ(a.history[k].residual, b.history[k].residual);
 }
 
-class LineSolver : public testing::TestWithParam<Variant> {
+class KeptLineSolver : public testing::TestWithParam<Variant> {
 protected:
     /// The open corner: a lamp, colours, black backs and light that escapes.
     static const StochasticCase& scene() {
@@ -76,7 +80,8 @@ protected:
     /// In one go, and how many units of progress it made.
     static std::pair<StochasticSolution, std::uint64_t> solved() {
         Counting progress;
-        StochasticSolution solution = GetParam().solve(SolverProblem(scene().mesh), scene().rays, progress, {});
+        StochasticSolution solution =
+            GetParam().solve(SolverProblem({scene().mesh, scene().optics}), scene().mesh, scene().rays, progress, {});
         return {std::move(solution), progress.units()};
     }
     /// With the state written whenever it can be; nothing if it was cancelled.
@@ -84,17 +89,18 @@ protected:
                                                        Progress& progress) {
         SolverCheckpoint checkpoint({path, resume, 0.0}, "test");
         try {
-            return GetParam().solve(SolverProblem(scene().mesh), scene().rays, progress, {{}, &checkpoint});
+            return GetParam().solve(SolverProblem({scene().mesh, scene().optics}), scene().mesh, scene().rays, progress,
+                                    {{}, &checkpoint});
         } catch (const Cancelled&) {
             return std::nullopt;
         }
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, LineSolver, testing::ValuesIn(variants()),
+INSTANTIATE_TEST_SUITE_P(All, KeptLineSolver, testing::ValuesIn(variants()),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST_P(LineSolver, HasTheSameBitsOnAnyNumberOfThreads) {
+TEST_P(KeptLineSolver, HasTheSameBitsOnAnyNumberOfThreads) {
     const ThreadCountGuard guard;
     setThreadCount(1);
     const StochasticSolution one = solved().first;
@@ -105,7 +111,7 @@ TEST_P(LineSolver, HasTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST_P(LineSolver, EndsWithTheSameBitsWhereverItWasStopped) {
+TEST_P(KeptLineSolver, EndsWithTheSameBitsWhereverItWasStopped) {
     const auto [whole, units] = solved();
     for (const double share : {0.001, 0.02, 0.13, 0.5, 0.9}) {
         SCOPED_TRACE(share);
@@ -119,7 +125,7 @@ TEST_P(LineSolver, EndsWithTheSameBitsWhereverItWasStopped) {
     }
 }
 
-TEST_P(LineSolver, GoesOnSeveralTimesOnOtherNumbersOfThreads) {
+TEST_P(KeptLineSolver, GoesOnSeveralTimesOnOtherNumbersOfThreads) {
     const ThreadCountGuard guard;
     const auto [whole, units] = solved();
     const CheckpointFile file;
@@ -136,7 +142,7 @@ TEST_P(LineSolver, GoesOnSeveralTimesOnOtherNumbersOfThreads) {
     expectSameBits(whole, *last);
 }
 
-TEST_P(LineSolver, RefusesADamagedState) {
+TEST_P(KeptLineSolver, RefusesADamagedState) {
     const CheckpointFile file;
     CancelAfter progress(solved().second / 3);
     EXPECT_FALSE(solveKept(file.path(), true, progress));
@@ -149,25 +155,25 @@ TEST_P(LineSolver, RefusesADamagedState) {
 // Half a million walks and more between two states, so that a sub-run of more has some within it.
 TEST(RandomWalks, GoOnWithinASubRun) {
     const StochasticCase c(closedCube(), 24);
-    const SolverProblem problem(c.mesh);
+    const SolverProblem problem({c.mesh, c.optics});
     const RandomWalkOptions options{.walks = 3'000'000, .subRuns = 3};
     Progress silent;
-    const StochasticSolution whole = solveRandomWalks(problem, c.rays, options, silent);
+    const StochasticSolution whole = solveRandomWalks(problem, c.mesh, c.rays, options, silent);
     const CheckpointFile file;
     CancelAfter progress(700'000); // of the first million
     {
         SolverCheckpoint checkpoint({file.path(), true, 0.0}, "test");
-        EXPECT_THROW(solveRandomWalks(problem, c.rays, options, progress, {{}, &checkpoint}), Cancelled);
+        EXPECT_THROW(solveRandomWalks(problem, c.mesh, c.rays, options, progress, {{}, &checkpoint}), Cancelled);
     }
     ASSERT_TRUE(file.exists());
     SolverCheckpoint checkpoint({file.path(), true, 0.0}, "test");
-    expectSameBits(whole, solveRandomWalks(problem, c.rays, options, silent, {{}, &checkpoint}));
+    expectSameBits(whole, solveRandomWalks(problem, c.mesh, c.rays, options, silent, {{}, &checkpoint}));
 }
 
 TEST(LineSolverIdentity, TellsApartWhatGivesOtherBits) {
     const StochasticCase c(openCorner(), 12);
     std::vector<LineSolverOptions> all(9);
-    all[1].method = SolverMethod::RandomWalk;
+    all[1].solver = LineSolver::RandomWalk;
     all[2].rays = 1'000'000;
     all[3].targetError = 0.03;
     all[4].lines = RelaxationLines::Global;
@@ -178,14 +184,16 @@ TEST(LineSolverIdentity, TellsApartWhatGivesOtherBits) {
     all[8].rays = 1'000'000;
     all[8].targetError = 0.03;
     std::vector<std::string> names;
-    for (const LineSolverOptions& options : all) names.push_back(lineSolverIdentity(SolverProblem(c.mesh), options));
-    PatchMesh brighter = c.mesh;
+    for (const LineSolverOptions& options : all)
+        names.push_back(lineSolverIdentity(SolverProblem({c.mesh, c.optics}), options));
+    PatchOptics brighter = c.optics;
     brighter.emittedRadiosity[0].x += 1.0F;
-    names.push_back(lineSolverIdentity(SolverProblem(brighter), {}));
-    names.push_back(lineSolverIdentity(SolverProblem(c.mesh, std::vector<RgbSum>(c.mesh.size(), RgbSum(1.0))), {}));
+    names.push_back(lineSolverIdentity(SolverProblem({c.mesh, brighter}), {}));
+    names.push_back(
+        lineSolverIdentity(SolverProblem({c.mesh, c.optics}, std::vector<RgbSum>(c.mesh.size(), RgbSum(1.0))), {}));
     for (std::size_t a = 0; a < names.size(); ++a)
         for (std::size_t b = 0; b < a; ++b) EXPECT_NE(names[a], names[b]);
-    EXPECT_EQ(names[0], lineSolverIdentity(SolverProblem(c.mesh), {}));
+    EXPECT_EQ(names[0], lineSolverIdentity(SolverProblem({c.mesh, c.optics}), {}));
 }
 
 } // namespace

@@ -21,26 +21,24 @@ constexpr std::uint64_t kFirstSeed = 6;
 
 struct LineVariant {
     std::string name;
-    std::function<StochasticSolution(const SolverProblem&, const RayCaster&, std::uint64_t seed)> solve;
+    std::function<StochasticSolution(const SolverProblem&, const SceneCase&, std::uint64_t seed)> solve;
 };
 
 LineVariant relaxation(std::string name, RelaxationLines lines, LineSet set) {
     StochasticRelaxationOptions options{.rays = 800'000, .lines = lines, .lineSet = set, .unshot = 0.0};
-    return {std::move(name),
-            [options](const SolverProblem& problem, const RayCaster& rays, std::uint64_t seed) mutable {
+    return {std::move(name), [options](const SolverProblem& problem, const SceneCase& c, std::uint64_t seed) mutable {
                 Progress progress;
                 options.seed = seed;
-                return solveStochasticRelaxation(problem, rays, options, progress);
+                return solveStochasticRelaxation(problem, c.mesh, c.rays, options, progress);
             }};
 }
 
 LineVariant walks(std::string name, WalkEstimator estimator) {
     RandomWalkOptions options{.walks = 400'000, .estimator = estimator};
-    return {std::move(name),
-            [options](const SolverProblem& problem, const RayCaster& rays, std::uint64_t seed) mutable {
+    return {std::move(name), [options](const SolverProblem& problem, const SceneCase& c, std::uint64_t seed) mutable {
                 Progress progress;
                 options.seed = seed;
-                return solveRandomWalks(problem, rays, options, progress);
+                return solveRandomWalks(problem, c.mesh, c.rays, options, progress);
             }};
 }
 
@@ -63,7 +61,7 @@ protected:
         Solutions solutions;
         double imbalance = 0.0, variance = 0.0;
         for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kSeeds; ++seed) {
-            solutions.push_back(GetParam().solve(SolverProblem(c.mesh), c.rays, seed));
+            solutions.push_back(GetParam().solve(SolverProblem({c.mesh, c.optics}), c, seed));
             EXPECT_LT(solutions.back().relativeError, 0.1); // of what is worth to be compared
             imbalance += solutions.back().energy.imbalance();
             variance += std::pow(solutions.back().imbalanceError, 2.0);
@@ -131,7 +129,7 @@ TEST_P(LinesOnScenes, TheFurnaceIsUniform) {
     const SceneCase& c = sceneCase("furnace_box.obj", 500, hemicubes(64));
     std::vector<RgbSum> irradiance;
     for (std::size_t i = 0; i < c.mesh.size(); ++i)
-        irradiance.push_back((RgbSum(2.0) - RgbSum(c.mesh.emittedRadiosity[i])) / RgbSum(c.mesh.reflectance[i]));
+        irradiance.push_back((RgbSum(2.0) - RgbSum(c.optics.emittedRadiosity[i])) / RgbSum(c.optics.reflectance[i]));
     expectWithinStatedErrors(c, solved(c), irradiance);
 }
 
@@ -149,8 +147,8 @@ TEST_P(LinesOnScenes, TheTetrahedronOfFourPatchesIsExact) {
     ASSERT_EQ(c.mesh.size(), 4U);
     std::vector<RgbSum> irradiance;
     for (std::size_t i = 0; i < 4; ++i)
-        irradiance.push_back((RgbSum(expected[i]) - RgbSum(c.mesh.emittedRadiosity[i])) /
-                             RgbSum(c.mesh.reflectance[i]));
+        irradiance.push_back((RgbSum(expected[i]) - RgbSum(c.optics.emittedRadiosity[i])) /
+                             RgbSum(c.optics.reflectance[i]));
     expectWithinStatedErrors(c, solved(c), irradiance);
 }
 

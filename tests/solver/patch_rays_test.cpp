@@ -3,7 +3,9 @@
 #include "core/error.h"
 #include "solver/local_exchange.h"
 #include "solver/patch_rays.h"
+#include "solver/ray_allotment.h"
 
+#include <algorithm>
 #include <map>
 
 namespace lambert {
@@ -31,6 +33,85 @@ TEST(PatchRays, ARunIsAPartOfThePatchsSequence) {
         for (const auto& [target, count] : endsOf(rays, {{5, 300, 700}}, 0)) parts[target] += count;
         EXPECT_EQ(parts, whole);
     }
+}
+
+std::vector<Ray> raysFrom(const PatchRays& rays, std::uint64_t first, std::uint32_t count) {
+    PatchRays::Batch batch;
+    batch.runs = {{5, first, count}};
+    return rays.rays(7, batch);
+}
+
+// Where the Sobol sequence ends, which has 32-bit points, another one follows.
+TEST(PatchRays, DoNotRepeatThemselvesAfter32Bits) {
+    const StochasticCase c(openCorner(), 60);
+    constexpr std::uint64_t kEnd = std::uint64_t{1} << 32;
+    const auto same = [](const Ray& a, const Ray& b) { return a.origin == b.origin && a.direction == b.direction; };
+    for (const Sampler sampler : {Sampler::Random, Sampler::Sobol}) {
+        const PatchRays rays(c.mesh, c.rays, sampler);
+        const std::vector<Ray> first = raysFrom(rays, 0, 20);
+        const std::vector<Ray> across = raysFrom(rays, kEnd - 20, 40);
+        const std::vector<Ray> before = raysFrom(rays, kEnd - 20, 20);
+        const std::vector<Ray> after = raysFrom(rays, kEnd, 20);
+        const std::vector<Ray> third = raysFrom(rays, 2 * kEnd, 20);
+        EXPECT_TRUE(std::equal(before.begin(), before.end(), across.begin(), same));
+        EXPECT_TRUE(std::equal(after.begin(), after.end(), across.begin() + 20, same));
+        for (std::size_t k = 0; k < 20; ++k) {
+            EXPECT_FALSE(same(after[k], first[k]));
+            EXPECT_FALSE(same(third[k], first[k]));
+            EXPECT_FALSE(same(third[k], after[k]));
+        }
+    }
+}
+
+TEST(RayAllotment, GivesAPatchMoreThan32BitsCount) {
+    const StochasticCase c(openCorner(), 0);
+    std::vector<Sender> senders(c.mesh.size());
+    senders[1].density = 1e10F / c.mesh.area[1];
+    const RayAllotment allotment(c.mesh, senders, 0.5);
+    EXPECT_NEAR(static_cast<double>(allotment.rays()), 1e10, 1e4); // densities are floats
+    std::uint64_t sum = 0;
+    allotment.visitAll([&](std::size_t patch, std::uint64_t first, std::uint64_t count) {
+        EXPECT_EQ(patch, 1U);
+        EXPECT_EQ(first, 0U);
+        sum += count;
+    });
+    EXPECT_EQ(sum, allotment.rays());
+}
+
+TEST(LineCounts, CountMoreThan32Bits) {
+    LineCounts counts(2);
+    for (int k = 0; k < 3; ++k) counts.addLines(1, std::uint64_t{3'000'000'000});
+    counts.addBack(1);
+    EXPECT_FLOAT_EQ(counts.backShare(1), 1.0F / 9e9F);
+    EXPECT_EQ(counts.backShare(0), 0.0F);
+}
+
+/// Sets how far the sequences of an exchange are.
+struct SequencesAt {
+    std::uint64_t place;
+    void operator()(std::vector<std::uint64_t>& next) const { std::fill(next.begin(), next.end(), place); }
+};
+
+// So that a patch goes on with rays that it has not sent: it receives other light than from the beginning of its sequence.
+TEST(LocalExchange, GoesOnAfter32Bits) {
+    const StochasticCase c(openCorner(), 60);
+    std::vector<Sender> senders(c.mesh.size());
+    for (std::size_t i = 0; i < senders.size(); ++i) senders[i] = {Rgb(c.exact.radiosity[i]), 300.0F};
+    const auto received = [&](std::uint64_t place) {
+        LocalExchange exchange(c.mesh, c.rays, Sampler::Sobol);
+        SequencesAt at{place};
+        exchange.keep(at);
+        FixedPointSums sums(c.mesh.size());
+        LineCounts counts(c.mesh.size());
+        Losses losses;
+        Progress progress;
+        exchange.exchange({.senders = senders, .seed = 1}, sums, losses, counts, progress);
+        std::vector<RgbSum> result;
+        for (std::size_t i = 0; i < sums.size(); ++i) result.push_back(sums[i]);
+        return result;
+    };
+    EXPECT_NE(received(std::uint64_t{1} << 32), received(0));
+    EXPECT_NE(received((std::uint64_t{1} << 32) - 1), received(0));
 }
 
 TEST(PatchRays, EndWithTheFrequencyOfFormFactors) {

@@ -15,7 +15,7 @@ constexpr std::array kEstimators{WalkEstimator::Collision, WalkEstimator::Absorp
 StochasticSolution solve(const StochasticCase& c, RandomWalkOptions options, std::uint64_t seed = 1) {
     Progress progress;
     options.seed = seed;
-    return solveRandomWalks(SolverProblem(c.mesh), c.rays, options, progress);
+    return solveRandomWalks(SolverProblem({c.mesh, c.optics}), c.mesh, c.rays, options, progress);
 }
 
 void expectEstimatorsUnbiased(const StochasticCase& c, const std::string& scene) {

@@ -4,7 +4,7 @@
 #include "formfactors/transport.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "solver/solver.h"
 #include "solver/stochastic_solution.h"
 #include "solver_case.h"
@@ -39,6 +39,7 @@ struct SceneCase {
         MeshOptions meshOptions;
         meshOptions.patches = patches;
         mesh = buildPatchMesh(scene, meshOptions, progress);
+        optics = patchOptics(scene, mesh);
         options.storage = MatrixStorage::Double;
         TransportMatrix computed = computeMatrix(planTransport(options, mesh, rays, progress), mesh, rays, progress);
         matrix = std::move(computed.matrix);
@@ -69,12 +70,13 @@ struct SceneCase {
         SolverOptions options;
         options.method = method;
         options.tolerance = 1e-7;
-        return solve(SolverProblem(mesh), rows, options, progress);
+        return solve(SolverProblem({mesh, optics}), rows, options, progress);
     }
 
     Scene scene;
     RayCaster rays;
     PatchMesh mesh;
+    PatchOptics optics;
     FormFactorMatrix matrix;
 };
 

@@ -22,17 +22,21 @@
 
 namespace lambert {
 
-/// Patches of area 1 that exist for their material only.
-inline PatchMesh patchesWith(std::span<const float> reflectance, std::span<const float> emitted) {
-    PatchMesh mesh;
-    mesh.frontCount = reflectance.size();
-    for (std::size_t i = 0; i < reflectance.size(); ++i) {
-        mesh.corners.push_back({0, 0, 0, 0});
-        mesh.area.push_back(1.0F);
-        mesh.reflectance.emplace_back(reflectance[i]);
-        mesh.emittedRadiosity.emplace_back(emitted[i]);
-    }
-    return mesh;
+/// Patches that exist for their material only.
+struct BarePatches {
+    std::vector<float> area;
+    PatchOptics optics;
+
+    operator PatchViews() const { return {area, optics}; }
+};
+
+/// Of area 1.
+inline BarePatches patchesWith(std::span<const float> reflectance, std::span<const float> emitted) {
+    BarePatches patches;
+    patches.area.assign(reflectance.size(), 1.0F);
+    for (const float rho : reflectance) patches.optics.reflectance.emplace_back(rho);
+    for (const float b : emitted) patches.optics.emittedRadiosity.emplace_back(b);
+    return patches;
 }
 
 inline FormFactorMatrix dense(std::size_t count, const std::function<double(std::size_t, std::size_t)>& factor) {
@@ -67,10 +71,10 @@ struct ReferenceCase {
     ReferenceCase(const std::string& scene, const std::string& key) {
         std::ifstream file(LAMBERT_DATA "/reference/analytic.json");
         const nlohmann::json json = nlohmann::json::parse(file).at(scene);
-        mesh = patchesWith(json.at("rho").get<std::vector<float>>(), json.at("E").get<std::vector<float>>());
+        patches = patchesWith(json.at("rho").get<std::vector<float>>(), json.at("E").get<std::vector<float>>());
         values = json.at(key).get<std::vector<double>>();
     }
-    PatchMesh mesh;
+    BarePatches patches;
     std::vector<double> values;
 };
 
@@ -83,21 +87,23 @@ inline double uniform(std::uint32_t i, std::uint32_t j, std::uint64_t seed) {
 struct RandomMatrix {
     RandomMatrix(std::uint32_t count, std::uint64_t seed, bool closed = false) : matrix(count, MatrixStorage::Double) {
         std::vector<float> nothing(count, 0.0F);
-        mesh = patchesWith(nothing, nothing);
+        patches = patchesWith(nothing, nothing);
         const auto random = [&](std::uint32_t i, std::uint32_t j) { return uniform(i, j, seed); };
         std::vector<FormFactorRow> rows(count);
         double largest = 0.0;
         for (std::uint32_t i = 0; i < count; ++i) {
-            mesh.area[i] = static_cast<float>(0.5 + 1.5 * random(i, count));
+            patches.area[i] = static_cast<float>(0.5 + 1.5 * random(i, count));
             for (std::uint32_t c = 0; c < 3; ++c) {
-                mesh.reflectance[i][static_cast<int>(c)] = static_cast<float>(0.95 * random(i, count + 1 + c));
+                patches.optics.reflectance[i][static_cast<int>(c)] =
+                    static_cast<float>(0.95 * random(i, count + 1 + c));
                 if (i % 10 == 0)
-                    mesh.emittedRadiosity[i][static_cast<int>(c)] = static_cast<float>(10.0 * random(i, count + 4 + c));
+                    patches.optics.emittedRadiosity[i][static_cast<int>(c)] =
+                        static_cast<float>(10.0 * random(i, count + 4 + c));
             }
             for (std::uint32_t j = 0; j < count; ++j) {
                 const double exchange = random(std::min(i, j), std::max(i, j));
                 if (i == j || exchange > 0.2) continue;
-                rows[i].entries.push_back({j, exchange / static_cast<double>(mesh.area[i])});
+                rows[i].entries.push_back({j, exchange / static_cast<double>(patches.area[i])});
             }
             largest = std::max(largest, rows[i].sum());
         }
@@ -113,7 +119,7 @@ struct RandomMatrix {
             matrix.setRow(i, rows[i]);
         }
     }
-    PatchMesh mesh;
+    BarePatches patches;
     FormFactorMatrix matrix;
 };
 

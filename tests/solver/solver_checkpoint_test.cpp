@@ -23,7 +23,7 @@ SolverOptions optionsFor(SolverMethod method) {
 /// Solves with the state written after every iteration; nothing if it was cancelled.
 std::optional<RadiositySolution> solveKept(const RandomMatrix& scene, const SolverOptions& options,
                                            const std::filesystem::path& path, bool resume, Progress& progress) {
-    const SolverProblem problem(scene.mesh);
+    const SolverProblem problem(scene.patches);
     SolverCheckpoint checkpoint({path, resume, 0.0}, solverIdentity(problem, options, {}));
     StoredRows rows(scene.matrix);
     try {
@@ -53,7 +53,7 @@ TEST_P(CheckpointedSolver, EndsWithTheSameBitsWhereverItWasStopped) {
     const SolverOptions options = optionsFor(GetParam());
     StoredRows rows(scene.matrix);
     Progress silent;
-    const RadiositySolution whole = solve(SolverProblem(scene.mesh), rows, options, silent);
+    const RadiositySolution whole = solve(SolverProblem(scene.patches), rows, options, silent);
     const auto last = static_cast<std::uint64_t>(whole.iterations);
     for (const std::uint64_t units : {std::uint64_t{1}, std::uint64_t{2}, last / 3, last / 2, last - 2, last - 1}) {
         SCOPED_TRACE(units);
@@ -71,7 +71,7 @@ TEST_P(CheckpointedSolver, GoesOnSeveralTimes) {
     const SolverOptions options = optionsFor(GetParam());
     StoredRows rows(scene.matrix);
     Progress silent;
-    const RadiositySolution whole = solve(SolverProblem(scene.mesh), rows, options, silent);
+    const RadiositySolution whole = solve(SolverProblem(scene.patches), rows, options, silent);
     const CheckpointFile file;
     std::optional<RadiositySolution> last;
     for (int run = 0; !last && run < 1000; ++run) {
@@ -88,7 +88,7 @@ TEST_P(CheckpointedSolver, NeedsFewerIterationsFromAWarmStart) {
     options.keepBounces = false;
     StoredRows rows(scene.matrix);
     Progress silent;
-    const SolverProblem problem(scene.mesh);
+    const SolverProblem problem(scene.patches);
     const RadiositySolution cold = solve(problem, rows, options, silent);
     std::vector<RgbSum> start;
     for (const RgbSum& e : cold.irradiance) start.emplace_back(Rgb(e)); // as a file holds it
@@ -107,7 +107,7 @@ TEST_P(CheckpointedSolver, TakesAStartThatIsTooBright) {
     options.keepBounces = false;
     StoredRows rows(scene.matrix);
     Progress silent;
-    const SolverProblem problem(scene.mesh);
+    const SolverProblem problem(scene.patches);
     const RadiositySolution cold = solve(problem, rows, options, silent);
     std::vector<RgbSum> start = cold.irradiance;
     for (RgbSum& e : start) e *= 3.0;
@@ -144,6 +144,30 @@ TEST(SolverCheckpoint, ThatIsDamagedIsRefused) {
         Progress silent;
         solveKept(scene, options, file.path(), true, silent);
     });
+}
+
+TEST(SolverCheckpoint, InUseByAnotherRunIsRefused) {
+    const CheckpointFile file;
+    const auto refusal = [&]() -> std::string {
+        try {
+            const SolverCheckpoint second({file.path(), true, 0.0}, "one");
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return {};
+    };
+    const std::string expected = "--checkpoint: " + file.path().string() + " is in use by another run";
+    {
+        SolverCheckpoint first({file.path(), false, 0.0}, "one");
+        EXPECT_EQ(refusal(), expected); // before it has written anything
+        const auto state = [](auto& archive) { archive(1); };
+        first.keep(state);
+        first.keep(state); // in a new file of the same name
+        EXPECT_EQ(refusal(), expected);
+        EXPECT_EQ(refusal(), expected); // the refused one has unlocked nothing
+    }
+    EXPECT_EQ(refusal(), "");
+    EXPECT_FALSE(std::filesystem::exists(file.path().string() + ".lock"));
 }
 
 TEST(SolverCheckpoint, ThatIsNotThereIsABeginning) {

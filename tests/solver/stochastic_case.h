@@ -4,7 +4,7 @@
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "solver/jacobi.h"
 #include "solver/stochastic_solution.h"
 
@@ -27,6 +27,7 @@ struct StochasticCase {
         options.patches = patches;
         Progress progress;
         mesh = buildPatchMesh(scene, options, progress);
+        optics = patchOptics(scene, mesh);
         const ClosedForm method(mesh, rays, {});
         FormFactorMatrix matrix(mesh.size(), MatrixStorage::Double);
         RowAccumulator accumulator(mesh.size());
@@ -37,7 +38,7 @@ struct StochasticCase {
             matrix.setRow(i, row);
         }
         StoredRows stored(matrix);
-        exact = solveJacobi(SolverProblem(mesh), stored, {.tolerance = 1e-12}, progress);
+        exact = solveJacobi(SolverProblem({mesh, optics}), stored, {.tolerance = 1e-12}, progress);
     }
 
     StochasticCase(const StochasticCase&) = delete;
@@ -46,6 +47,7 @@ struct StochasticCase {
     Scene scene;
     RayCaster rays;
     PatchMesh mesh;
+    PatchOptics optics;
     RadiositySolution exact;
 };
 

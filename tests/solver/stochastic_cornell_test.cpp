@@ -3,7 +3,7 @@
 #include "formfactors/local_lines.h"
 #include "meshing/build_patch_mesh.h"
 #include "meshing/prepare.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "solver/jacobi.h"
 #include "solver/random_walks.h"
 #include "solver/stochastic_relaxation.h"
@@ -22,6 +22,7 @@ struct CornellBox {
         options.patches = 300;
         Progress progress;
         mesh = buildPatchMesh(scene, options, progress);
+        optics = patchOptics(scene, mesh);
     }
     RadiositySolution jacobi(std::uint64_t seed) const {
         const LocalLines lines(mesh, rays, {.lines = 1U << 15, .seed = seed});
@@ -35,7 +36,7 @@ struct CornellBox {
         }
         Progress progress;
         StoredRows stored(matrix);
-        return solveJacobi(SolverProblem(mesh), stored, {.tolerance = 1e-9}, progress);
+        return solveJacobi(SolverProblem({mesh, optics}), stored, {.tolerance = 1e-9}, progress);
     }
     /// Σ A |a − b|².
     double squares(const std::vector<RgbSum>& a, const std::vector<RgbSum>& b) const {
@@ -47,6 +48,7 @@ struct CornellBox {
     Scene scene;
     RayCaster rays;
     PatchMesh mesh;
+    PatchOptics optics;
 };
 
 // The sum of squares of the differences of some 300 patches is within a factor of 1.5 of what both errors, that of the reference
@@ -77,11 +79,14 @@ TEST(StochasticCornellBox, AllMethodsAgreeWithJacobiWithinTheirErrors) {
     const RadiositySolution b = box.jacobi(2);
     Progress progress;
     for (const RelaxationLines lines : {RelaxationLines::Local, RelaxationLines::Global})
-        expectSame(
-            box,
-            solveStochasticRelaxation(SolverProblem(box.mesh), box.rays, {.rays = 2'000'000, .lines = lines}, progress),
-            a, b);
-    expectSame(box, solveRandomWalks(SolverProblem(box.mesh), box.rays, {.walks = 2'000'000}, progress), a, b);
+        expectSame(box,
+                   solveStochasticRelaxation(SolverProblem({box.mesh, box.optics}), box.mesh, box.rays,
+                                             {.rays = 2'000'000, .lines = lines}, progress),
+                   a, b);
+    expectSame(
+        box,
+        solveRandomWalks(SolverProblem({box.mesh, box.optics}), box.mesh, box.rays, {.walks = 2'000'000}, progress), a,
+        b);
 }
 
 } // namespace

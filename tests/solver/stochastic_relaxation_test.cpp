@@ -13,7 +13,7 @@ namespace {
 StochasticSolution solve(const StochasticCase& c, StochasticRelaxationOptions options, std::uint64_t seed = 1) {
     Progress progress;
     options.seed = seed;
-    return solveStochasticRelaxation(SolverProblem(c.mesh), c.rays, options, progress);
+    return solveStochasticRelaxation(SolverProblem({c.mesh, c.optics}), c.mesh, c.rays, options, progress);
 }
 
 std::vector<StochasticSolution> solveAll(const StochasticCase& c, const StochasticRelaxationOptions& options,
@@ -74,7 +74,8 @@ TEST(StochasticRelaxation, SolvesTheTetrahedronOfFourPatches) {
     ASSERT_EQ(c.mesh.size(), 4U);
     std::vector<RgbSum> irradiance;
     for (std::size_t i = 0; i < 4; ++i)
-        irradiance.push_back((RgbSum(kExact[i]) - RgbSum(c.mesh.emittedRadiosity[i])) / RgbSum(c.mesh.reflectance[i]));
+        irradiance.push_back((RgbSum(kExact[i]) - RgbSum(c.optics.emittedRadiosity[i])) /
+                             RgbSum(c.optics.reflectance[i]));
     expectUnbiased(c.mesh, irradiance, solveAll(c, {.rays = 40'000, .unshot = 0.0}, kSeeds), "tetrahedron");
 }
 
@@ -90,13 +91,13 @@ TEST(StochasticRelaxation, FurnaceIsUniform) {
 TEST(StochasticRelaxation, LightsWithoutAreaEnterAsDirectIrradiance) {
     StochasticCase c(closedCube(), 54);
     // Every patch of reflectance 1/2 receives E_0 = 3 and emits nothing: E = 3 / (1 - 1/2).
-    std::fill(c.mesh.emittedRadiosity.begin(), c.mesh.emittedRadiosity.end(), Rgb(0.0F));
+    std::fill(c.optics.emittedRadiosity.begin(), c.optics.emittedRadiosity.end(), Rgb(0.0F));
     const std::vector<RgbSum> direct(c.mesh.size(), RgbSum(3.0, 2.0, 1.0));
     const std::vector<RgbSum> exact(c.mesh.size(), RgbSum(6.0, 4.0, 2.0));
     std::vector<StochasticSolution> runs;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
         Progress progress;
-        runs.push_back(solveStochasticRelaxation(SolverProblem(c.mesh, direct), c.rays,
+        runs.push_back(solveStochasticRelaxation(SolverProblem({c.mesh, c.optics}, direct), c.mesh, c.rays,
                                                  {.rays = 40'000, .unshot = 0.0, .seed = seed}, progress));
         EXPECT_NEAR(runs.back().energy.received.x, 18.0, 1e-5);
     }
@@ -223,12 +224,12 @@ TEST(StochasticRelaxation, EndsWithHardlyAnyRays) {
 TEST(StochasticRelaxation, EndsWhereNoLightArrives) {
     StochasticCase c(openCorner(), 12);
     for (std::size_t i = 0; i < c.mesh.size(); ++i) { // a corner that is lit from without and reflects nothing
-        c.mesh.emittedRadiosity[i] = Rgb(0.0F);
-        c.mesh.reflectance[i] = Rgb(0.0F);
+        c.optics.emittedRadiosity[i] = Rgb(0.0F);
+        c.optics.reflectance[i] = Rgb(0.0F);
     }
     Progress progress;
     const std::vector<RgbSum> direct(c.mesh.size(), RgbSum(1.0));
-    const StochasticSolution lit = solveStochasticRelaxation(SolverProblem(c.mesh, direct), c.rays,
+    const StochasticSolution lit = solveStochasticRelaxation(SolverProblem({c.mesh, c.optics}, direct), c.mesh, c.rays,
                                                              {.rays = 10'000'000, .targetError = 0.01}, progress);
     EXPECT_TRUE(lit.targetReached);
     EXPECT_EQ(lit.irradiance, direct);
@@ -288,8 +289,9 @@ class Cancelling : public Progress {
 TEST(StochasticRelaxation, CanBeCancelled) {
     const StochasticCase c(openCorner(), 60);
     Cancelling progress;
-    EXPECT_THROW(solveStochasticRelaxation(SolverProblem(c.mesh), c.rays, {.rays = 1'000'000'000}, progress),
-                 Cancelled);
+    EXPECT_THROW(
+        solveStochasticRelaxation(SolverProblem({c.mesh, c.optics}), c.mesh, c.rays, {.rays = 1'000'000'000}, progress),
+        Cancelled);
 }
 
 TEST(StochasticRelaxation, RefusesWhatMakesNoSense) {
@@ -299,10 +301,10 @@ TEST(StochasticRelaxation, RefusesWhatMakesNoSense) {
     EXPECT_THROW(solve(c, {.sampler = Sampler::Halton}), UsageError);
     EXPECT_THROW(solve(c, {.shootingShare = 0.0}), UsageError);
     EXPECT_THROW(solve(c, {.unshot = std::nan("")}), UsageError);
-    PatchMesh dark = c.mesh;
+    PatchOptics dark = c.optics;
     std::fill(dark.emittedRadiosity.begin(), dark.emittedRadiosity.end(), Rgb(0.0F));
     Progress progress;
-    EXPECT_THROW(solveStochasticRelaxation(SolverProblem(dark), c.rays, {}, progress), InputError);
+    EXPECT_THROW(solveStochasticRelaxation(SolverProblem({c.mesh, dark}), c.mesh, c.rays, {}, progress), InputError);
 }
 
 TEST(StochasticRelaxation, SpendsAboutTheRaysItIsGiven) {

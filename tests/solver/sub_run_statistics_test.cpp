@@ -10,14 +10,14 @@
 namespace lambert {
 namespace {
 
-PatchMesh patches(std::size_t count) {
-    PatchMesh mesh;
-    mesh.frontCount = count;
-    mesh.corners.resize(count);
-    mesh.area.assign(count, 2.0F);
-    mesh.reflectance.assign(count, Rgb(0.5F));
-    mesh.emittedRadiosity.assign(count, Rgb(1.0F));
-    return mesh;
+struct Patches {
+    std::vector<float> area;
+    PatchOptics optics;
+    operator PatchViews() const { return {area, optics}; }
+};
+
+Patches patches(std::size_t count) {
+    return {std::vector<float>(count, 2.0F), {std::vector<Rgb>(count, Rgb(0.5F)), std::vector<Rgb>(count, Rgb(1.0F))}};
 }
 
 /// Independent numbers of the normal distribution, by Box and Muller.
@@ -29,8 +29,8 @@ double normal(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 }
 
 TEST(SubRunStatistics, MeanAndStandardErrorOfThreeRuns) {
-    const PatchMesh mesh = patches(1);
-    const SolverProblem problem(mesh);
+    const Patches given = patches(1);
+    const SolverProblem problem(given);
     SubRunStatistics statistics(problem);
     for (const float e : {1.0F, 2.0F, 6.0F}) statistics.add(std::array{Rgb(e, 2.0F * e, 0.0F)}, {}, 100);
     // Mean 3, squares 4 + 1 + 9 = 14, variance of the mean 14 / 2 / 3.
@@ -48,8 +48,8 @@ TEST(SubRunStatistics, MeanAndStandardErrorOfThreeRuns) {
 }
 
 TEST(SubRunStatistics, RaysAreWeights) {
-    const PatchMesh mesh = patches(1);
-    const SolverProblem problem(mesh);
+    const Patches given = patches(1);
+    const SolverProblem problem(given);
     SubRunStatistics statistics(problem);
     statistics.add(std::array{Rgb(1.0F)}, {}, 100);
     statistics.add(std::array{Rgb(2.0F)}, {}, 300);
@@ -65,11 +65,11 @@ TEST(SubRunStatistics, RaysAreWeights) {
 // with one degree of freedom for all, known from seven numbers, the bound is coarse, and 8 % are allowed.
 TEST(SubRunStatistics, UpperErrorIsExceededOnceInTwentyTimes) {
     for (const auto& [count, parts] : {std::pair{1, 1}, std::pair{60, 1}, std::pair{60, 60}, std::pair{600, 20}}) {
-        const PatchMesh mesh = patches(static_cast<std::size_t>(count));
+        const Patches given = patches(static_cast<std::size_t>(count));
         int exceeded = 0;
         constexpr int kCases = 1000;
         for (int k = 0; k < kCases; ++k) {
-            const SolverProblem problem(mesh);
+            const SolverProblem problem(given);
             SubRunStatistics statistics(problem);
             for (std::uint32_t run = 0; run < 8; ++run) {
                 std::vector<Rgb> e;
@@ -93,8 +93,8 @@ TEST(SubRunStatistics, UpperErrorIsExceededOnceInTwentyTimes) {
 }
 
 TEST(SubRunSchedule, WithoutATargetTheRaysAreShared) {
-    const PatchMesh mesh = patches(1);
-    const SolverProblem problem(mesh);
+    const Patches given = patches(1);
+    const SolverProblem problem(given);
     SubRunStatistics statistics(problem);
     const SubRunSchedule schedule(1000, 0.0, 4, 1);
     for (int k = 0; k < 4; ++k) {
@@ -105,8 +105,8 @@ TEST(SubRunSchedule, WithoutATargetTheRaysAreShared) {
 }
 
 TEST(SubRunSchedule, WithATargetItEndsAtTheRaysAllowed) {
-    const PatchMesh mesh = patches(1);
-    const SolverProblem problem(mesh);
+    const Patches given = patches(1);
+    const SolverProblem problem(given);
     SubRunStatistics statistics(problem);
     const SubRunSchedule schedule(1'000'000, 1e-9, 8, 1);
     std::uint64_t total = 0;
@@ -123,8 +123,8 @@ TEST(SubRunSchedule, WithATargetItEndsAtTheRaysAllowed) {
 }
 
 TEST(SubRunSchedule, RunsThatDrawNoRaysComeToAnEnd) {
-    const PatchMesh mesh = patches(1);
-    const SolverProblem problem(mesh);
+    const Patches given = patches(1);
+    const SolverProblem problem(given);
     SubRunStatistics statistics(problem);
     const SubRunSchedule schedule(20'000, 1e-3, 8, 1);
     int runs = 0;

@@ -1,6 +1,6 @@
 /// What the bound of the geometric term takes away.
 #include "core/random.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "statistics.h"
 #include "vpl_case.h"
 

@@ -1,4 +1,4 @@
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "vpl_case.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 /// Closed boxes whose light is known exactly.
 #include "core/parallel.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "statistics.h"
 #include "vpl_case.h"
 

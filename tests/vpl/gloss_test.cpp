@@ -3,7 +3,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "scene/environment.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "statistics.h"
 #include "vpl_case.h"
 

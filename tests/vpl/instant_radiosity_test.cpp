@@ -18,12 +18,14 @@ struct PatchCase : VplCase {
         options.patches = patches;
         Progress progress;
         mesh = buildPatchMesh(scene, options, progress);
+        optics = patchOptics(scene, mesh);
     }
     InstantRadiosity solve(const InstantRadiosityOptions& options) const {
         Progress progress;
-        return solveInstantRadiosity(SolverProblem(mesh), rays, options, progress);
+        return solveInstantRadiosity(SolverProblem({mesh, optics}), mesh, rays, options, progress);
     }
     PatchMesh mesh;
+    PatchOptics optics;
 };
 
 Scene furnace() {
@@ -64,8 +66,8 @@ TEST(InstantRadiosity, TakesDirectLightFromTheProblem) {
     const PatchCase c(scene, 60);
     Progress progress;
     const std::vector<RgbSum> direct(c.mesh.size(), RgbSum(3.0, 2.0, 1.0));
-    const InstantRadiosity found =
-        solveInstantRadiosity(SolverProblem(c.mesh, direct), c.rays, {.trace = {.particles = 100}}, progress);
+    const InstantRadiosity found = solveInstantRadiosity(SolverProblem({c.mesh, c.optics}, direct), c.mesh, c.rays,
+                                                         {.trace = {.particles = 100}}, progress);
     for (const RgbSum& e : found.irradiance) EXPECT_EQ(e, RgbSum(3.0, 2.0, 1.0));
 }
 

@@ -2,7 +2,7 @@
 
 #include "meshing/prepare.h"
 #include "scene/example_scenes.h"
-#include "scene/ray_caster.h"
+#include "scene/rays/ray_caster.h"
 #include "vpl/gather.h"
 #include "vpl/particle_sources.h"
 #include "vpl/trace_lights.h"

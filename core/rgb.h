@@ -1,0 +1,13 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace lambert {
+
+/// Linear RGB, Rec. 709 primaries.
+using Rgb = glm::vec3;
+
+/// Sums over patches and time, in double.
+using RgbSum = glm::dvec3;
+
+} // namespace lambert
