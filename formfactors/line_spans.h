@@ -24,12 +24,8 @@ public:
     class Scratch {
         friend class LineSpans;
         LineCrossings crossings;
-        struct alignas(64) Patches {
-            std::uint32_t of[LinePacket::kSize];
-        };
-        std::vector<Patches> fronts; ///< by row of the crossings: the patches on the fronts of what is crossed
-        std::vector<std::uint32_t> polygon,
-            patch; ///< of the rows that cross different polygons, one crossing after the other
+        // Row by row of the crossings:
+        std::vector<std::uint32_t> polygon, front; ///< what is crossed, and the patch on its front
         std::vector<float> u, v;
     };
 
@@ -43,7 +39,7 @@ public:
             std::uint32_t left = out(); // what the line left last
             for (std::size_t k = 0; k < scratch.crossings.count(line); ++k) {
                 const LineCrossings::Row& row = rows[k];
-                std::uint32_t front = scratch.fronts[k].of[line];
+                std::uint32_t front = scratch.front[k * LinePacket::kSize + static_cast<std::size_t>(line)];
                 std::uint32_t behind = back();
                 if (mesh_.lookup.hasBacks())
                     behind = std::min(mesh_.lookup.backPatch(row.polygon[line], front), back());

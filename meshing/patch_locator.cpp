@@ -132,30 +132,26 @@ PatchLocator locatePatches(const Scene& scene, const Polygon& polygon,
     const auto cellCount = [&](double extent) {
         return static_cast<std::uint32_t>(std::clamp(std::ceil(extent / cellSize), 1.0, cells));
     };
-    PatchLocator locator;
-    CellGrid& grid = locator.grid;
-    grid.columns = cellCount(size.x);
-    grid.rows = cellCount(size.y);
-    const glm::dvec2 cellsPerMetre = glm::dvec2(grid.columns, grid.rows) / size;
+    const std::uint32_t columns = cellCount(size.x), rows = cellCount(size.y);
+    const glm::dvec2 cellsPerMetre = glm::dvec2(columns, rows) / size;
     const auto toGrid = [&](glm::dvec2 point) { return glm::vec2((point - lower) * cellsPerMetre); };
     for (glm::dvec2& point : p) point = (point - lower) * cellsPerMetre;
     const glm::dvec2 alongV = polygon.isQuad() ? p[3] - p[0] : p[2] - p[0];
-    grid.origin = {glm::vec2(p[0]), glm::vec2(p[1] + p[3] - p[2])};
-    grid.axisU = {glm::vec2(p[1] - p[0]), glm::vec2(p[2] - p[3])};
-    grid.axisV = {glm::vec2(alongV), glm::vec2(p[2] - p[1])};
-    if (!polygon.isQuad()) { // rounding may put u + v above 1
-        grid.origin[1] = grid.origin[0];
-        grid.axisU[1] = grid.axisU[0];
-        grid.axisV[1] = grid.axisV[0];
-    }
+    const auto chart = [&](glm::dvec2 origin, glm::dvec2 axisU, glm::dvec2 axisV) {
+        return CellChart{glm::vec2(origin), glm::vec2(axisU), glm::vec2(axisV), static_cast<std::int32_t>(columns - 1),
+                         static_cast<std::int32_t>(rows - 1)};
+    };
+    PatchLocator locator;
+    locator.charts.fill(chart(p[0], p[1] - p[0], alongV)); // of a triangle both: rounding may put u + v above 1
+    if (polygon.isQuad()) locator.charts[1] = chart(p[1] + p[3] - p[2], p[2] - p[3], p[2] - p[1]);
     locator.corners.reserve(4 * corners.size());
     for (const auto& patch : corners)
         for (std::size_t k = 0; k < 4; ++k)
             locator.corners.push_back(toGrid(frame.project(positions[patch[k] == kNone ? patch[2] : patch[k]])));
 
-    const ReachedCells reached(locator.corners, grid.columns, grid.rows);
+    const ReachedCells reached(locator.corners, columns, rows);
     CellCoder coder(locator);
-    const std::size_t cellsInAll = std::size_t{grid.columns} * grid.rows;
+    const std::size_t cellsInAll = std::size_t{columns} * rows;
     locator.codes.reserve(cellsInAll);
     for (std::size_t cell = 0; cell < cellsInAll; ++cell) locator.codes.push_back(coder.codeFor(reached.of(cell)));
     return locator;

@@ -11,12 +11,12 @@
 
 namespace lambert {
 
-/// Fine uniform grid over a polygon in a plane frame, which finds the patch at a point of the polygon's chart.
-struct CellGrid {
-    std::array<glm::vec2, 2> origin, axisU, axisV; //!< chart → cells, for u + v <= 1 and for the rest of a quad
-    std::uint32_t columns, rows;
-    std::uint32_t firstCell = 0;   //!< into the codes
-    std::uint32_t firstCorner = 0; //!< into the corners
+/// Takes half of a polygon's chart, u + v <= 1 or the rest, to a grid of cells.
+struct CellChart {
+    glm::vec2 origin{0.0F}, axisU{0.0F}, axisV{0.0F};
+    std::int32_t lastColumn = 0, lastRow = 0;
+    std::uint32_t firstCell = kNone; //!< into the codes; kNone: the cells are the patches
+    std::uint32_t first = 0;         //!< patch
 };
 
 /// An edge between two patches, for the cells that no other crosses.
@@ -30,9 +30,9 @@ struct CellSplit {
 inline constexpr std::uint32_t kSplit = 0x80000000;  //!< from here: kSplit + index into the splits
 inline constexpr std::uint32_t kSearch = 0xC0000000; //!< from here: kSearch + index into the candidates
 
-/// All that finds the patches of one polygon.
+/// All that finds the patches of one polygon: a fine uniform grid over it in a plane frame.
 struct PatchLocator {
-    CellGrid grid{};
+    std::array<CellChart, 2> charts{};
     std::vector<std::uint32_t> codes; //!< columns × rows, row by row
     std::vector<CellSplit> splits;
     std::vector<std::uint32_t> candidates; //!< per searched cell: how many, then the patches

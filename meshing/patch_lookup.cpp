@@ -13,6 +13,8 @@ namespace lambert {
 
 namespace {
 
+constexpr std::size_t kLanes = 16;
+
 float cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// The smallest of the signed areas that the point spans with the edges of a patch: not negative inside.
@@ -24,141 +26,38 @@ float insideness(const glm::vec2* c, glm::vec2 point) {
 }
 
 LAMBERT_VECTOR_CLONES
-bool allEqual(const std::uint32_t (&values)[16]) {
+bool allEqual(const std::uint32_t* values) {
     std::uint32_t difference = 0;
-    for (int lane = 0; lane < 16; ++lane) difference |= values[lane] ^ values[0];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) difference |= values[lane] ^ values[0];
     return difference == 0;
 }
 
-} // namespace
-
+/// Points in cells, and the cells that they fall into.
 LAMBERT_VECTOR_CLONES
-void PatchLookup::gridPatches(const Entry& entry, const float (&u)[16], const float (&v)[16],
-                              std::uint32_t (&patch)[16]) {
-    const Entry grid = entry;
-    if (grid.skew == glm::vec2(0.0F)) {
-        for (int lane = 0; lane < 16; ++lane)
-            patch[lane] = grid.first + gridIndex(v[lane], grid.rows) * grid.columns + gridIndex(u[lane], grid.columns);
-        return;
-    }
-    for (int lane = 0; lane < 16; ++lane) {
-        const GridPoint p = gridPoint(u[lane], v[lane], grid.skew);
-        patch[lane] = grid.first + gridIndex(p.t, grid.rows) * grid.columns + gridIndex(p.s, grid.columns);
+void findCells(const CellChart* charts, const float* u, const float* v, float* x, float* y, std::uint32_t* cell) {
+    const CellChart near = charts[0], far = charts[1];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const bool isNear = u[lane] + v[lane] <= 1.0F;
+        const float nearX = near.origin.x + u[lane] * near.axisU.x + v[lane] * near.axisV.x;
+        const float nearY = near.origin.y + u[lane] * near.axisU.y + v[lane] * near.axisV.y;
+        const float farX = far.origin.x + u[lane] * far.axisU.x + v[lane] * far.axisV.x;
+        const float farY = far.origin.y + u[lane] * far.axisU.y + v[lane] * far.axisV.y;
+        x[lane] = isNear ? nearX : farX;
+        y[lane] = isNear ? nearY : farY;
+        const int column = std::clamp(static_cast<int>(x[lane]), 0, near.lastColumn);
+        const int row = std::clamp(static_cast<int>(y[lane]), 0, near.lastRow);
+        cell[lane] = static_cast<std::uint32_t>(row * (near.lastColumn + 1) + column);
     }
 }
 
-void PatchLookup::addGrid(const Scene& scene, const Polygon& polygon, std::uint32_t first, std::uint32_t columns,
-                          std::uint32_t rows) {
-    Entry entry;
-    entry.first = first;
-    entry.columns = static_cast<std::uint16_t>(columns);
-    entry.rows = static_cast<std::uint16_t>(rows);
-    if (polygon.isQuad() && columns * rows > 1) {
-        const PlaneFrame frame = planeFrame(scene, polygon);
-        const glm::dvec2 origin = frame.project(corner(scene, polygon, 0));
-        const glm::dvec2 a = frame.project(corner(scene, polygon, 1)) - origin;
-        const glm::dvec2 b = frame.project(corner(scene, polygon, 3)) - origin;
-        const glm::dvec2 beyond = frame.project(corner(scene, polygon, 2)) - origin - a - b;
-        const glm::vec2 skew(glm::dvec2(beyond.x * b.y - beyond.y * b.x, a.x * beyond.y - a.y * beyond.x) /
-                             (a.x * b.y - a.y * b.x));
-        // Rounding alone must not cost a parallelogram its short way.
-        if (std::max(std::abs(skew.x), std::abs(skew.y)) > 1e-5F) entry.skew = skew;
-    }
-    entries_.push_back(entry);
-    Chart chart;
-    chart.first = first;
-    if (entry.skew != glm::vec2(0.0F)) {
-        chart.firstCell = 0;
-    } else {
-        chart.axisU = {static_cast<float>(columns), 0.0F};
-        chart.axisV = {0.0F, static_cast<float>(rows)};
-        chart.lastColumn = static_cast<int>(columns) - 1;
-        chart.lastRow = static_cast<int>(rows) - 1;
-    }
-    places_.push_back(columns * rows == 1 ? first : addCharts(chart, chart));
-}
-
-void PatchLookup::addLocated(const PatchLocator& locator, std::uint32_t first) {
-    Entry entry;
-    entry.first = first;
-    entry.locator = static_cast<std::uint32_t>(grids_.size());
-    entries_.push_back(entry);
-
-    CellGrid grid = locator.grid;
-    grid.firstCell = static_cast<std::uint32_t>(cells_.size());
-    grid.firstCorner = static_cast<std::uint32_t>(gridCorners_.size());
-    grids_.push_back(grid);
-    std::array<Chart, 2> charts;
-    for (std::size_t half = 0; half < 2; ++half)
-        charts[half] = {grid.origin[half],
-                        grid.axisU[half],
-                        grid.axisV[half],
-                        static_cast<int>(grid.columns) - 1,
-                        static_cast<int>(grid.rows) - 1,
-                        grid.firstCell,
-                        first};
-    places_.push_back(addCharts(charts[0], charts[1]));
-
-    const auto splits = static_cast<std::uint32_t>(splits_.size());
-    const auto candidates = static_cast<std::uint32_t>(candidates_.size());
-    for (const std::uint32_t code : locator.codes)
-        cells_.push_back(code + (code < kSplit ? 0 : code < kSearch ? splits : candidates));
-    splits_.insert(splits_.end(), locator.splits.begin(), locator.splits.end());
-    candidates_.insert(candidates_.end(), locator.candidates.begin(), locator.candidates.end());
-    gridCorners_.insert(gridCorners_.end(), locator.corners.begin(), locator.corners.end());
-}
-
-std::uint32_t PatchLookup::search(const CellGrid& grid, std::uint32_t firstCandidate, glm::vec2 point) const {
-    std::uint32_t best = 0;
-    float bestInsideness = std::numeric_limits<float>::lowest();
-    const std::uint32_t* candidate = candidates_.data() + firstCandidate;
-    for (std::uint32_t remaining = *candidate; remaining > 0; --remaining) {
-        const std::uint32_t patch = *++candidate;
-        const float inside = insideness(gridCorners_.data() + grid.firstCorner + 4 * std::size_t{patch}, point);
-        if (inside >= 0.0F) return patch;
-        if (inside > bestInsideness) {
-            bestInsideness = inside;
-            best = patch;
-        }
-    }
-    return best;
-}
-
-std::uint32_t PatchLookup::locate(const Entry& entry, float u, float v) const {
-    const CellGrid& grid = grids_[entry.locator];
-    const glm::vec2 point = cellPoint(grid, u, v);
-    return entry.first + decode(grid, cells_[cellAt(grid, point)], point);
-}
-
+/// Patches, relative to the first, of the cells' codes, without branches, which these unpredictable cells would make expensive.
+/// Returns whether some cell has to be searched.
 LAMBERT_VECTOR_CLONES
-void PatchLookup::cells16(const CellGrid& grid, const float (&u)[16], const float (&v)[16], float (&x)[16],
-                          float (&y)[16], std::uint32_t (&cell)[16]) {
-    const CellGrid l = grid;
-    const int lastColumn = static_cast<int>(l.columns) - 1;
-    const int lastRow = static_cast<int>(l.rows) - 1;
-    for (int lane = 0; lane < 16; ++lane) {
-        const bool near = u[lane] + v[lane] <= 1.0F;
-        const float nearX = l.origin[0].x + u[lane] * l.axisU[0].x + v[lane] * l.axisV[0].x;
-        const float nearY = l.origin[0].y + u[lane] * l.axisU[0].y + v[lane] * l.axisV[0].y;
-        const float farX = l.origin[1].x + u[lane] * l.axisU[1].x + v[lane] * l.axisV[1].x;
-        const float farY = l.origin[1].y + u[lane] * l.axisU[1].y + v[lane] * l.axisV[1].y;
-        x[lane] = near ? nearX : farX;
-        y[lane] = near ? nearY : farY;
-        const int column = std::clamp(static_cast<int>(x[lane]), 0, lastColumn);
-        const int row = std::clamp(static_cast<int>(y[lane]), 0, lastRow);
-        cell[lane] = l.firstCell + static_cast<std::uint32_t>(row * static_cast<int>(l.columns) + column);
-    }
-}
-
-/// Patches, relative to the first, of the cells' codes: as decode, without branches, which these unpredictable cells would make
-/// expensive. Returns whether some cell has to be searched.
-LAMBERT_VECTOR_CLONES
-bool PatchLookup::decode16(const std::uint32_t* cells, const CellSplit* splits, const float (&x)[16],
-                           const float (&y)[16], const std::uint32_t (&cell)[16], std::uint32_t (&code)[16],
-                           std::uint32_t (&patch)[16]) {
+bool decode(const std::uint32_t* codes, const CellSplit* splits, const float* x, const float* y,
+            const std::uint32_t* cell, std::uint32_t* code, std::uint32_t* patch) {
     std::uint32_t highest = 0;
-    for (int lane = 0; lane < 16; ++lane) code[lane] = cells[cell[lane]];
-    for (int lane = 0; lane < 16; ++lane) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) code[lane] = codes[cell[lane]];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const bool isSplit = code[lane] - kSplit < kSearch - kSplit;
         const CellSplit& split = splits[isSplit ? code[lane] - kSplit : 0];
         const float side = split.normal.x * x[lane] + split.normal.y * y[lane];
@@ -169,58 +68,159 @@ bool PatchLookup::decode16(const std::uint32_t* cells, const CellSplit* splits, 
     return highest >= kSearch;
 }
 
-void PatchLookup::locate16(const Entry& entry, const float (&u)[16], const float (&v)[16],
-                           std::uint32_t (&patch)[16]) const {
-    alignas(64) float x[16], y[16];
-    alignas(64) std::uint32_t cell[16], code[16];
-    const CellGrid& grid = grids_[entry.locator];
-    cells16(grid, u, v, x, y, cell);
-    if (decode16(cells_.data(), splits_.data(), x, y, cell, code, patch))
-        for (int lane = 0; lane < 16; ++lane)
-            if (code[lane] >= kSearch) patch[lane] = search(grid, code[lane] - kSearch, {x[lane], y[lane]});
-    for (std::uint32_t& p : patch) p += entry.first;
+std::uint32_t gridIndex(float coordinate, std::uint32_t count) {
+    const int index = static_cast<int>(coordinate * static_cast<float>(count));
+    return static_cast<std::uint32_t>(std::clamp(index, 0, static_cast<int>(count) - 1));
 }
 
-/// Charts of a polygon's halves: for points with u + v <= 1 and for the others.
-std::uint32_t PatchLookup::addCharts(const Chart& near, const Chart& far) {
-    charts_.push_back(near);
-    charts_.push_back(far);
-    return kCharts + static_cast<std::uint32_t>(charts_.size() - 2);
-}
+float root(float value) { return std::sqrt(value > 0.0F ? value : 0.0F); }
 
-bool PatchLookup::onOnePolygon(const std::uint32_t (&polygon)[16]) { return polygon[0] != kNone && allEqual(polygon); }
+} // namespace
 
-void PatchLookup::patchesAt(const std::uint32_t (&polygon)[16], const float (&u)[16], const float (&v)[16],
-                            std::uint32_t (&patch)[16]) const {
-    if (onOnePolygon(polygon)) {
-        const Entry& entry = entries_[polygon[0]];
-        if (entry.locator != kNone)
-            locate16(entry, u, v, patch);
-        else
-            gridPatches(entry, u, v, patch);
+void PatchLookup::addGrid(const Scene& scene, const Polygon& polygon, std::uint32_t first, std::uint32_t columns,
+                          std::uint32_t rows) {
+    Entry& entry = entries_.emplace_back();
+    entry.first = first;
+    entry.columns = static_cast<std::uint16_t>(columns);
+    entry.rows = static_cast<std::uint16_t>(rows);
+    if (columns * rows == 1) {
+        places_.push_back(first);
         return;
     }
-    std::uint32_t hits[16], found[16];
-    float hitU[16], hitV[16];
-    std::size_t count = 0;
-    for (int lane = 0; lane < 16; ++lane) {
-        hits[count] = polygon[lane];
-        hitU[count] = u[lane];
-        hitV[count] = v[lane];
-        count += polygon[lane] != kNone ? 1 : 0;
+    if (polygon.isQuad()) {
+        const PlaneFrame frame = planeFrame(scene, polygon);
+        const glm::dvec2 origin = frame.project(corner(scene, polygon, 0));
+        const glm::dvec2 a = frame.project(corner(scene, polygon, 1)) - origin;
+        const glm::dvec2 b = frame.project(corner(scene, polygon, 3)) - origin;
+        const glm::dvec2 beyond = frame.project(corner(scene, polygon, 2)) - origin - a - b;
+        const glm::vec2 skew(glm::dvec2(beyond.x * b.y - beyond.y * b.x, a.x * beyond.y - a.y * beyond.x) /
+                             (a.x * b.y - a.y * b.x));
+        // Rounding alone must not cost a parallelogram its short way.
+        if (std::max(std::abs(skew.x), std::abs(skew.y)) > 1e-5F) entry.skew = skew;
     }
-    findSome(hits, hitU, hitV, count, found);
-    const std::uint32_t* next = found;
-    for (int lane = 0; lane < 16; ++lane) {
-        patch[lane] = polygon[lane] != kNone ? *next : patch[lane];
-        next += polygon[lane] != kNone ? 1 : 0;
+    CellChart chart;
+    chart.first = first;
+    if (entry.isSkewed()) {
+        chart.firstCell = 0;
+    } else {
+        chart.axisU = {static_cast<float>(columns), 0.0F};
+        chart.axisV = {0.0F, static_cast<float>(rows)};
+        chart.lastColumn = static_cast<int>(columns) - 1;
+        chart.lastRow = static_cast<int>(rows) - 1;
     }
+    places_.push_back(kCharts + static_cast<std::uint32_t>(charts_.size()));
+    charts_.insert(charts_.end(), 2, chart);
+}
+
+void PatchLookup::addLocated(const PatchLocator& locator, std::uint32_t first) {
+    Entry& entry = entries_.emplace_back();
+    entry.first = first;
+    entry.firstCorner = static_cast<std::uint32_t>(corners_.size());
+    places_.push_back(kCharts + static_cast<std::uint32_t>(charts_.size()));
+    for (CellChart chart : locator.charts) {
+        chart.firstCell = static_cast<std::uint32_t>(cells_.size());
+        chart.first = first;
+        charts_.push_back(chart);
+    }
+    const auto splits = static_cast<std::uint32_t>(splits_.size());
+    const auto candidates = static_cast<std::uint32_t>(candidates_.size());
+    for (const std::uint32_t code : locator.codes)
+        cells_.push_back(code + (code < kSplit ? 0 : code < kSearch ? splits : candidates));
+    splits_.insert(splits_.end(), locator.splits.begin(), locator.splits.end());
+    candidates_.insert(candidates_.end(), locator.candidates.begin(), locator.candidates.end());
+    corners_.insert(corners_.end(), locator.corners.begin(), locator.corners.end());
+}
+
+/// By bilinear coordinates of a chart point of a quad. In the frame of two edges, v0 = (0, 0), v1 = (1, 0), v3 = (0, 1),
+/// the last corner is v2 = (1, 1) + skew and the quad is (s, t) + s t skew, while the chart is (u, v), and beyond the
+/// diagonal (u, v) + (u + v − 1) skew. Of the two solutions the one that goes on to (u, v) as the skew goes to 0.
+std::uint32_t PatchLookup::skewedPatch(const Entry& entry, float u, float v) {
+    const glm::vec2 skew = entry.skew;
+    const float beyond = u + v > 1.0F ? u + v - 1.0F : 0.0F;
+    const float x = u + beyond * skew.x;
+    const float y = v + beyond * skew.y;
+    const float k = x * skew.y - y * skew.x;
+    const float s = 2.0F * x / (1.0F - k + root((1.0F - k) * (1.0F - k) + 4.0F * skew.y * x));
+    const float t = 2.0F * y / (1.0F + k + root((1.0F + k) * (1.0F + k) + 4.0F * skew.x * y));
+    return entry.first + gridIndex(t, entry.rows) * entry.columns + gridIndex(s, entry.columns);
+}
+
+LAMBERT_VECTOR_CLONES
+void PatchLookup::skewedPatches(const Entry& entry, const float* u, const float* v, std::uint32_t* patch) {
+    const Entry grid = entry;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) patch[lane] = skewedPatch(grid, u[lane], v[lane]);
+}
+
+/// In a cell whose code names no patch.
+std::uint32_t PatchLookup::search(std::uint32_t polygon, std::uint32_t code, float u, float v, glm::vec2 point) const {
+    const Entry& entry = entries_[polygon];
+    if (entry.isSkewed()) return skewedPatch(entry, u, v);
+    std::uint32_t best = 0;
+    float bestInsideness = std::numeric_limits<float>::lowest();
+    const std::uint32_t* candidate = candidates_.data() + (code - kSearch);
+    for (std::uint32_t remaining = *candidate; remaining > 0; --remaining) {
+        const std::uint32_t patch = *++candidate;
+        const float inside = insideness(corners_.data() + entry.firstCorner + 4 * std::size_t{patch}, point);
+        if (inside >= 0.0F) return entry.first + patch;
+        if (inside > bestInsideness) {
+            bestInsideness = inside;
+            best = patch;
+        }
+    }
+    return entry.first + best;
+}
+
+/// For kLanes hits.
+void PatchLookup::onePolygon(std::uint32_t polygon, const float* u, const float* v, std::uint32_t* patch) const {
+    const std::uint32_t place = places_[polygon];
+    if (place < kCharts) {
+        std::fill_n(patch, kLanes, place);
+        return;
+    }
+    if (entries_[polygon].isSkewed()) return skewedPatches(entries_[polygon], u, v, patch);
+    const CellChart* const charts = &charts_[place - kCharts];
+    alignas(64) float x[kLanes], y[kLanes];
+    alignas(64) std::uint32_t cell[kLanes], code[kLanes];
+    findCells(charts, u, v, x, y, cell);
+    if (charts->firstCell == kNone) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) patch[lane] = charts->first + cell[lane];
+        return;
+    }
+    const bool isSearched = decode(&cells_[charts->firstCell], splits_.data(), x, y, cell, code, patch);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) patch[lane] += charts->first;
+    for (std::size_t lane = 0; isSearched && lane < kLanes; ++lane)
+        if (code[lane] >= kSearch) patch[lane] = search(polygon, code[lane], u[lane], v[lane], {x[lane], y[lane]});
 }
 
 void PatchLookup::patchesAt(std::span<const std::uint32_t> polygon, std::span<const float> u, std::span<const float> v,
                             std::span<std::uint32_t> patch) const {
-    for (std::size_t k = 0; k < polygon.size(); k += kSome)
-        findSome(&polygon[k], &u[k], &v[k], std::min(kSome, polygon.size() - k), &patch[k]);
+    // The hits on different polygons together. One more is written and not kept.
+    std::uint32_t hit[kSome + 1], found[kSome];
+    float hitU[kSome + 1], hitV[kSome + 1];
+    std::size_t at[kSome + 1];
+    std::size_t count = 0;
+    const auto findHits = [&] {
+        if (count == 0) return;
+        findSome(hit, hitU, hitV, count, found);
+        for (std::size_t k = 0; k < count; ++k) patch[at[k]] = found[k];
+        count = 0;
+    };
+    for (std::size_t first = 0; first < polygon.size(); first += kLanes) {
+        const std::size_t last = std::min(first + kLanes, polygon.size());
+        if (last - first == kLanes && polygon[first] != kNone && allEqual(&polygon[first])) {
+            onePolygon(polygon[first], &u[first], &v[first], &patch[first]);
+            continue;
+        }
+        if (count + kLanes > kSome) findHits();
+        for (std::size_t k = first; k < last; ++k) {
+            hit[count] = polygon[k];
+            hitU[count] = u[k];
+            hitV[count] = v[k];
+            at[count] = k;
+            count += polygon[k] != kNone ? 1 : 0;
+        }
+    }
+    findHits();
 }
 
 /// In steps, each for all hits, so that memory is asked for all cells and then for all edges at once; without branches, which
@@ -233,7 +233,7 @@ void PatchLookup::findSome(const std::uint32_t* polygon, const float* u, const f
     for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t place = places_[polygon[k]];
         const bool only = place < kCharts;
-        const Chart& chart = charts_[only ? 0 : place - kCharts + (u[k] + v[k] <= 1.0F ? 0 : 1)];
+        const CellChart& chart = charts_[only ? 0 : place - kCharts + (u[k] + v[k] <= 1.0F ? 0 : 1)];
         x[k] = chart.origin.x + u[k] * chart.axisU.x + v[k] * chart.axisV.x;
         y[k] = chart.origin.y + u[k] * chart.axisU.y + v[k] * chart.axisV.y;
         const int column = std::min(std::max(static_cast<int>(x[k]), 0), chart.lastColumn);
@@ -253,7 +253,10 @@ void PatchLookup::findSome(const std::uint32_t* polygon, const float* u, const f
         slow[slowCount] = static_cast<std::uint32_t>(k);
         slowCount += found >= kSearch ? 1 : 0;
     }
-    for (std::size_t k = 0; k < slowCount; ++k) patch[slow[k]] = patchAt(polygon[slow[k]], u[slow[k]], v[slow[k]]);
+    for (std::size_t i = 0; i < slowCount; ++i) {
+        const std::uint32_t k = slow[i];
+        patch[k] = search(polygon[k], *code[k], u[k], v[k], {x[k], y[k]});
+    }
 }
 
 } // namespace lambert
