@@ -32,19 +32,13 @@ double distanceFromPlane(const PlaneFrame& frame, const glm::vec3& point) {
 
 } // namespace
 
-std::vector<PlanarContact> findContacts(const Scene& scene, const VertexIndex& index) {
+std::vector<PlanarContact> findContacts(const Scene& scene, const BoxIndex& index) {
     const float tolerance = 2.0F * weldTolerance(scene);
     std::vector<PlanarContact> contacts;
     std::vector<std::uint32_t> found;
     for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
         const Polygon& polygon = scene.polygons[i];
-        glm::vec3 lower = corner(scene, polygon, 0);
-        glm::vec3 upper = lower;
-        for (int k = 1; k < polygon.size(); ++k) {
-            lower = glm::min(lower, corner(scene, polygon, k));
-            upper = glm::max(upper, corner(scene, polygon, k));
-        }
-        index.inBox(lower - tolerance, upper + tolerance, found);
+        index.meeting(boundsOf(scene, polygon).grownBy(tolerance), found);
         if (found.size() <= static_cast<std::size_t>(polygon.size())) continue;
         const PlaneFrame frame = planeFrame(scene, polygon);
         PlanarContact contact{i, {}, tolerance};

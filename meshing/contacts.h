@@ -1,8 +1,7 @@
 #pragma once
 
 #include "meshing/edge_division.h"
-#include "meshing/spatial_index.h"
-#include "scene/scene.h"
+#include "scene/box_index.h"
 
 #include <cstdint>
 #include <utility>
@@ -17,11 +16,11 @@ struct PlanarContact {
     float tolerance = 0.0F;              //!< metres; what is nearer to the border lies on it
 };
 
-/// Polygons that have vertices of others inside them, or edges of others across them; in order.
+/// Polygons that have vertices of others inside them, or edges of others across them; in order. `vertices`: those of the scene.
 ///
 /// Light changes abruptly where an object stands on a surface. A patch that lies half under the object would spread the
 /// darkness below it to the outside, and the light outside to below it.
-std::vector<PlanarContact> findContacts(const Scene& scene, const VertexIndex& index);
+std::vector<PlanarContact> findContacts(const Scene& scene, const BoxIndex& vertices);
 
 /// The edges of other polygons that lie inside this one, as divided by `division`: pairs of consecutive vertices.
 /// An edge that leaves the polygon is not among them.

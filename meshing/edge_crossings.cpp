@@ -1,8 +1,8 @@
 #include "meshing/edge_crossings.h"
 
 #include "meshing/pair_triangles.h"
-#include "meshing/spatial_index.h"
 #include "meshing/weld.h"
+#include "scene/box_index.h"
 
 #include <glm/geometric.hpp>
 
@@ -52,7 +52,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> uniqueEdges(const Scene& sc
 
 std::vector<glm::vec3> edgeCrossings(const Scene& scene, float tolerance) {
     const auto edges = uniqueEdges(scene);
-    const EdgeIndex index(scene.positions, edges, tolerance);
+    const BoxIndex index(boxesOf(scene.positions, edges, tolerance));
     const auto segment = [&](std::uint32_t edge) {
         const glm::dvec3 a(scene.positions[edges[edge].first]);
         const glm::dvec3 b(scene.positions[edges[edge].second]);

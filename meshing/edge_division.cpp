@@ -24,7 +24,7 @@ std::uint32_t partsFor(double length, double target) {
 
 } // namespace
 
-EdgeDivision::EdgeDivision(const Scene& scene, const VertexIndex& index, double targetLength,
+EdgeDivision::EdgeDivision(const Scene& scene, const BoxIndex& index, double targetLength,
                            std::vector<glm::vec3>& positions) {
     const std::vector<Key> edges = uniqueEdges(scene);
     insertVertices(scene, index, edges);
@@ -44,7 +44,7 @@ EdgeDivision::EdgeDivision(const Scene& scene, const VertexIndex& index, double 
     }
 }
 
-void EdgeDivision::insertVertices(const Scene& scene, const VertexIndex& index, const std::vector<Key>& edges) {
+void EdgeDivision::insertVertices(const Scene& scene, const BoxIndex& index, const std::vector<Key>& edges) {
     const float tolerance = 2.0F * weldTolerance(scene);
     std::vector<std::uint32_t> found;
     std::vector<std::pair<float, std::uint32_t>> onEdge;
@@ -61,7 +61,7 @@ void EdgeDivision::insertVertices(const Scene& scene, const VertexIndex& index, 
         for (int piece = 0; piece < pieces; ++piece) {
             const glm::vec3 p = a + direction * (static_cast<float>(piece) / static_cast<float>(pieces));
             const glm::vec3 q = a + direction * (static_cast<float>(piece + 1) / static_cast<float>(pieces));
-            index.inBox(glm::min(p, q) - tolerance, glm::max(p, q) + tolerance, found);
+            index.meeting(Bounds{glm::min(p, q), glm::max(p, q)}.grownBy(tolerance), found);
             for (const std::uint32_t vertex : found) {
                 if (vertex == key.first || vertex == key.second) continue;
                 const glm::vec3 offset = scene.positions[vertex] - a;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "meshing/spatial_index.h"
-#include "scene/scene.h"
+#include "scene/box_index.h"
 
 #include <array>
 #include <cstdint>
@@ -16,8 +15,9 @@ namespace lambert {
 /// the target length.
 class EdgeDivision {
 public:
-    /// Appends the division points to `positions`, which begin with the scene's. `targetLength` in metres, may be infinite.
-    EdgeDivision(const Scene& scene, const VertexIndex& index, double targetLength, std::vector<glm::vec3>& positions);
+    /// Appends the division points to `positions`, which begin with the scene's; `index` is of these. `targetLength` in metres,
+    /// may be infinite.
+    EdgeDivision(const Scene& scene, const BoxIndex& index, double targetLength, std::vector<glm::vec3>& positions);
 
     /// One side of a polygon: all vertices from corner k to corner k + 1, both included.
     struct Side {
@@ -42,7 +42,7 @@ private:
     };
 
     std::uint32_t find(std::uint32_t a, std::uint32_t b) const;
-    void insertVertices(const Scene& scene, const VertexIndex& index, const std::vector<Key>& edges);
+    void insertVertices(const Scene& scene, const BoxIndex& index, const std::vector<Key>& edges);
     void collectSegments(const std::vector<Key>& edges, std::size_t vertexCount);
     void balanceQuads(const Scene& scene);
     void chain(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& vertices) const;

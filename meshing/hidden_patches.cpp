@@ -5,17 +5,16 @@
 #include "meshing/patch_offset.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
+#include "scene/box_index.h"
 #include "scene/surface.h"
 
-#include <boost/function_output_iterator.hpp>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lambert {
 
@@ -26,47 +25,10 @@ constexpr double kOpposed = -0.999999; ///< cosine between faces that touch
 constexpr int kStrata = 4;             ///< a packet's rays: kStrata × kStrata
 static_assert(kStrata * kStrata == RayPacket::kSize);
 
-/// Finds polygons by their boxes.
-class PolygonIndex {
-public:
-    explicit PolygonIndex(const Scene& scene) {
-        std::vector<Entry> entries;
-        entries.reserve(scene.polygons.size());
-        for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
-            glm::vec3 lower = corner(scene, scene.polygons[i], 0), upper = lower;
-            for (int k = 1; k < scene.polygons[i].size(); ++k) {
-                lower = glm::min(lower, corner(scene, scene.polygons[i], k));
-                upper = glm::max(upper, corner(scene, scene.polygons[i], k));
-            }
-            entries.emplace_back(box(lower, upper), i);
-        }
-        tree_ = Tree(entries);
-    }
-
-    void near(const glm::vec3& point, float distance, std::vector<std::uint32_t>& found) const {
-        found.clear();
-        const auto take = [&](const Entry& entry) { found.push_back(entry.second); };
-        tree_.query(boost::geometry::index::intersects(box(point - distance, point + distance)),
-                    boost::make_function_output_iterator(take));
-    }
-
-private:
-    using Point = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
-    using Box = boost::geometry::model::box<Point>;
-    using Entry = std::pair<Box, std::uint32_t>;
-    using Tree = boost::geometry::index::rtree<Entry, boost::geometry::index::quadratic<16>>;
-
-    static Box box(const glm::vec3& lower, const glm::vec3& upper) {
-        return {Point(lower.x, lower.y, lower.z), Point(upper.x, upper.y, upper.z)};
-    }
-
-    Tree tree_;
-};
-
 /// Looks at one patch after the other.
 class Looker {
 public:
-    Looker(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics, const PolygonIndex& index)
+    Looker(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics, const BoxIndex& index)
         : rays_(rays),
           scene_(rays.scene()),
           mesh_(mesh),
@@ -98,7 +60,7 @@ private:
     /// Whether faces that face the patch lie on it everywhere.
     bool isTouched(std::size_t patch) {
         return std::all_of(points_.begin(), points_.end(), [&](const glm::vec3& point) {
-            index_.near(point, tolerance_, found_);
+            index_.meeting(Bounds{point, point}.grownBy(tolerance_), found_);
             return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t other) {
                 return other != mesh_.polygon[patch] && touches(other, point, glm::dvec3(mesh_.normal[patch]));
             });
@@ -160,7 +122,7 @@ private:
         const glm::vec3 point = polygonPoint(scene_, polygon, packet_.u[lane], packet_.v[lane]);
         const PlaneFrame frame = planeFrame(scene_, scene_.polygons[polygon]);
         const glm::dvec3 normal = glm::cross(frame.axisX, frame.axisY);
-        index_.near(point, tolerance_, found_);
+        index_.meeting(Bounds{point, point}.grownBy(tolerance_), found_);
         return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t other) {
             return other != polygon && isBlackBack(other, 0.0F) && touches(other, point, normal);
         });
@@ -170,7 +132,7 @@ private:
     const Scene& scene_;
     const PatchMesh& mesh_;
     const PatchOptics& optics_;
-    const PolygonIndex& index_;
+    const BoxIndex& index_;
     float tolerance_;
     std::vector<glm::vec3> points_;
     std::vector<std::uint32_t> found_;
@@ -180,7 +142,9 @@ private:
 } // namespace
 
 std::vector<bool> findHiddenPatches(const RayCaster& rays, const PatchMesh& mesh, const PatchOptics& optics) {
-    const PolygonIndex index(rays.scene());
+    std::vector<Bounds> boxes;
+    for (const Polygon& polygon : rays.scene().polygons) boxes.push_back(boundsOf(rays.scene(), polygon));
+    const BoxIndex index(std::move(boxes));
     std::vector<char> hidden(mesh.size(), 0); // of threads' own, which bits are not
     parallelFor(mesh.size(), 256, [&](std::size_t begin, std::size_t end, int) {
         Looker looker(rays, mesh, optics, index);

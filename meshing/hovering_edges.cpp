@@ -6,7 +6,7 @@
 #include "meshing/pair_triangles.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
-#include "meshing/spatial_index.h"
+#include "scene/box_index.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -230,7 +230,7 @@ private:
 
 HoveringOutlines findHoveringOutlines(const Scene& scene, double reach) {
     const Edges edges(scene);
-    const EdgeIndex index(scene.positions, edges.keys, 0.0F);
+    const BoxIndex index(boxesOf(scene.positions, edges.keys, 0.0F));
     const auto touching = 2.0 * static_cast<double>(weldTolerance(scene));
     std::vector<std::vector<Outline>> outlines(scene.polygons.size());
     std::vector<std::vector<Edge>> contacts(scene.polygons.size());
@@ -240,12 +240,7 @@ HoveringOutlines findHoveringOutlines(const Scene& scene, double reach) {
             const Polygon& polygon = scene.polygons[i];
             const double own = reachOver(scene, polygon, reach);
             if (isOccluder(scene, polygon) || own < 0.125 * reach || own < 16.0 * touching) continue;
-            glm::vec3 lower = corner(scene, polygon, 0), upper = lower;
-            for (int k = 1; k < polygon.size(); ++k) {
-                lower = glm::min(lower, corner(scene, polygon, k));
-                upper = glm::max(upper, corner(scene, polygon, k));
-            }
-            index.inBox(lower - static_cast<float>(own), upper + static_cast<float>(own), near);
+            index.meeting(boundsOf(scene, polygon).grownBy(static_cast<float>(own)), near);
             for (const bool back : {false, true}) {
                 if (back && polygon.backMaterial == kNone) continue;
                 auto some = OneSide(scene, edges, static_cast<std::uint32_t>(i), back, own).outlines(near);

@@ -1,8 +1,8 @@
 #include "meshing/plane_lines.h"
 
 #include "meshing/pair_triangles.h"
-#include "meshing/spatial_index.h"
 #include "meshing/weld.h"
+#include "scene/box_index.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -32,7 +32,7 @@ std::vector<glm::vec3> flatPoints(const PlaneLines& drawing) {
 
 /// All points within the tolerance of each line, in their order along it.
 std::vector<Chain> chains(const PlaneLines& drawing, const std::vector<glm::vec3>& flat, double tolerance) {
-    const VertexIndex index(flat);
+    const BoxIndex index(boxesOf(flat));
     const auto margin = static_cast<float>(1.1 * tolerance);
     std::vector<Chain> result;
     std::vector<std::uint32_t> found;
@@ -42,7 +42,7 @@ std::vector<Chain> chains(const PlaneLines& drawing, const std::vector<glm::vec3
         const glm::dvec2 along = drawing.points[to] - a;
         const double squared = glm::dot(along, along);
         between.clear();
-        index.inBox(glm::min(flat[from], flat[to]) - margin, glm::max(flat[from], flat[to]) + margin, found);
+        index.meeting(Bounds{glm::min(flat[from], flat[to]), glm::max(flat[from], flat[to])}.grownBy(margin), found);
         for (const std::uint32_t point : found) {
             if (point == from || point == to) continue;
             const glm::dvec2 offset = drawing.points[point] - a;
@@ -93,7 +93,7 @@ std::optional<LineCrossing> crossingOf(const PlaneLines& drawing, const Piece& o
 /// Adds the points where pieces cross; where several lines cross in one point only that. Returns whether there were any.
 bool addCrossings(PlaneLines& drawing, const std::vector<glm::vec3>& flat, const std::vector<Piece>& pieces,
                   double tolerance) {
-    const EdgeIndex index(flat, pieces, static_cast<float>(tolerance));
+    const BoxIndex index(boxesOf(flat, pieces, static_cast<float>(tolerance)));
     std::vector<std::uint32_t> near;
     std::vector<LineCrossing> crossings;
     std::vector<glm::vec3> points;

@@ -50,7 +50,7 @@ SceneDivision::SceneDivision(const Scene& scene, bool splitContacts, NearContact
       near_(std::move(near)),
       withVertices_(withVertices(scene, near_.vertices)),
       scene_(withVertices_ ? *withVertices_ : plain_),
-      index_(scene_.positions),
+      index_(boxesOf(scene_.positions)),
       progress_(progress),
       report_(report) {
     if (splitContacts) contacts_ = findContacts(scene_, index_);
@@ -96,7 +96,7 @@ void SceneDivision::countNearContacts() const {
     report_.nearContactPolygons = near_.contacts.size();
     report_.nearContactPatches = 0;
     if (near_.contacts.empty()) return;
-    const VertexIndex plainIndex(plain_.positions);
+    const BoxIndex plainIndex(boxesOf(plain_.positions));
     std::vector<PlanarContact> plainContacts;
     if (splitContacts_) plainContacts = findContacts(plain_, plainIndex);
     const double length = report_.patchLength;

@@ -7,8 +7,7 @@
 #include "meshing/mesh_report.h"
 #include "meshing/near_contacts.h"
 #include "meshing/patch_mesh_builder.h"
-#include "meshing/spatial_index.h"
-#include "scene/scene.h"
+#include "scene/box_index.h"
 
 #include <cstddef>
 #include <optional>
@@ -39,8 +38,8 @@ private:
     bool splitContacts_;
     NearContacts near_;
     std::optional<Scene> withVertices_;
-    const Scene& scene_; ///< with the vertices of near contacts
-    VertexIndex index_;
+    const Scene& scene_;                  ///< with the vertices of near contacts
+    BoxIndex index_;                      ///< of its vertices
     std::vector<PlanarContact> contacts_; ///< in the polygons' order
     Progress& progress_;
     MeshReport& report_;

@@ -3,7 +3,6 @@
 #include "meshing/disjoint_sets.h"
 #include "meshing/edge_division.h"
 #include "meshing/pair_triangles.h"
-#include "meshing/spatial_index.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,7 +28,7 @@ struct EdgeUse {
 /// All uses of all edges, sorted by edge and node.
 std::vector<EdgeUse> edgeUses(const Scene& scene) {
     std::vector<glm::vec3> positions = scene.positions;
-    const EdgeDivision division(scene, VertexIndex(scene.positions), std::numeric_limits<double>::infinity(),
+    const EdgeDivision division(scene, BoxIndex(boxesOf(scene.positions)), std::numeric_limits<double>::infinity(),
                                 positions);
     std::vector<EdgeUse> uses;
     uses.reserve(4 * scene.polygons.size());
@@ -105,11 +104,9 @@ double sixfoldVolume(const Scene& scene, const Polygon& polygon, const glm::dvec
     return sum;
 }
 
-void grow(Bounds& bounds, const Scene& scene, const Polygon& polygon) {
-    for (int k = 0; k < polygon.size(); ++k) {
-        bounds.lower = glm::min(bounds.lower, corner(scene, polygon, k));
-        bounds.upper = glm::max(bounds.upper, corner(scene, polygon, k));
-    }
+void grow(Bounds& bounds, const Bounds& by) {
+    bounds.lower = glm::min(bounds.lower, by.lower);
+    bounds.upper = glm::max(bounds.upper, by.upper);
 }
 
 bool contains(const Bounds& outer, const Bounds& inner) {
@@ -130,7 +127,7 @@ struct GrowingShell {
         shell.area += area;
         shell.volume += sixfoldVolume(scene, polygon, from) / 6.0;
         shell.oneSided = shell.oneSided && isOneSided(scene, polygon);
-        grow(shell.bounds, scene, polygon);
+        grow(shell.bounds, boundsOf(scene, polygon));
         if (area <= largest) return;
         largest = area;
         shell.node = polygon.node;

@@ -141,15 +141,9 @@ private:
     BoxIndex boxes(float margin) const {
         std::vector<Bounds> boxes;
         boxes.reserve(scene_.polygons.size());
-        for (const Polygon& polygon : scene_.polygons) {
-            Bounds box{corner(scene_, polygon, 0), corner(scene_, polygon, 0)};
-            for (int k = 1; k < polygon.size(); ++k) {
-                box.lower = glm::min(box.lower, corner(scene_, polygon, k));
-                box.upper = glm::max(box.upper, corner(scene_, polygon, k));
-            }
-            boxes.push_back({box.lower - 0.5F * margin, box.upper + 0.5F * margin});
-        }
-        return BoxIndex(boxes);
+        for (const Polygon& polygon : scene_.polygons)
+            boxes.push_back(boundsOf(scene_, polygon).grownBy(0.5F * margin));
+        return BoxIndex(std::move(boxes));
     }
 
     /// Whether all corners of a polygon lie on one side of a plane, out of reach.

@@ -35,10 +35,18 @@ Bounds boundsOf(const Scene& scene) {
     if (scene.polygons.empty()) return {};
     Bounds bounds{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
     for (const Polygon& polygon : scene.polygons) {
-        for (int k = 0; k < polygon.size(); ++k) {
-            bounds.lower = glm::min(bounds.lower, corner(scene, polygon, k));
-            bounds.upper = glm::max(bounds.upper, corner(scene, polygon, k));
-        }
+        const Bounds own = boundsOf(scene, polygon);
+        bounds.lower = glm::min(bounds.lower, own.lower);
+        bounds.upper = glm::max(bounds.upper, own.upper);
+    }
+    return bounds;
+}
+
+Bounds boundsOf(const Scene& scene, const Polygon& polygon) {
+    Bounds bounds{corner(scene, polygon, 0), corner(scene, polygon, 0)};
+    for (int k = 1; k < polygon.size(); ++k) {
+        bounds.lower = glm::min(bounds.lower, corner(scene, polygon, k));
+        bounds.upper = glm::max(bounds.upper, corner(scene, polygon, k));
     }
     return bounds;
 }

@@ -142,7 +142,9 @@ struct Bounds {
     glm::vec3 upper{0.0F};
     glm::vec3 size() const { return upper - lower; }
     float diagonal() const; //!< length, 0 for an empty scene
+    Bounds grownBy(float margin) const { return {lower - margin, upper + margin}; }
 };
 Bounds boundsOf(const Scene& scene);
+Bounds boundsOf(const Scene& scene, const Polygon& polygon);
 
 } // namespace lambert

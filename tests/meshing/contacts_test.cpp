@@ -26,11 +26,13 @@ Scene floorWithBoxes(std::initializer_list<std::array<glm::vec3, 2>> boxes) {
     return prepareScene(scene);
 }
 
-std::vector<PlanarContact> contactsOf(const Scene& scene) { return findContacts(scene, VertexIndex(scene.positions)); }
+std::vector<PlanarContact> contactsOf(const Scene& scene) {
+    return findContacts(scene, BoxIndex(boxesOf(scene.positions)));
+}
 
 std::size_t lineCount(const Scene& scene, const PlanarContact& contact, double length) {
     std::vector<glm::vec3> positions = scene.positions;
-    const EdgeDivision division(scene, VertexIndex(scene.positions), length, positions);
+    const EdgeDivision division(scene, BoxIndex(boxesOf(scene.positions)), length, positions);
     return contactLines(contact, scene, division).size();
 }
 
@@ -160,7 +162,7 @@ TEST(BuildPatchMesh, DividesUnderABoxThatStandsAcrossTiles) {
                 below += static_cast<double>(mesh.area[i]);
         }
         EXPECT_NEAR(below, 1.7 * 2.2, 1e-5) << length; // no patch lies half under the box; floats of 4 m
-        EXPECT_EQ(report.contactPolygons, 8U); // the ninth is covered whole
+        EXPECT_EQ(report.contactPolygons, 8U);         // the ninth is covered whole
     }
 }
 

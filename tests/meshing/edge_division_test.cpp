@@ -21,7 +21,7 @@ struct Divided {
     explicit Divided(const Scene& input, double length)
         : scene(prepareScene(input)),
           positions(scene.positions),
-          division(scene, VertexIndex(scene.positions), length, positions) {}
+          division(scene, BoxIndex(boxesOf(scene.positions)), length, positions) {}
     EdgeDivision::Side side(std::size_t polygon, int k) const { return division.side(scene.polygons[polygon], k); }
 
     Scene scene;
@@ -97,7 +97,7 @@ TEST(EdgeDivision, FindsSegmentsByTheirEnds) {
     }
 }
 
-TEST(VertexIndex, FindsWhatLiesInABoxItsBorderIncluded) {
+TEST(BoxIndex, FindsWhatLiesInABoxItsBorderIncluded) {
     SCOPED_TRACE("seed 5");
     std::mt19937 random(5);
     std::uniform_int_distribution<int> lattice(0, 9); // so that many lie on the border
@@ -108,7 +108,7 @@ TEST(VertexIndex, FindsWhatLiesInABoxItsBorderIncluded) {
     };
     std::vector<glm::vec3> positions;
     for (int i = 0; i < 500; ++i) positions.push_back(randomPoint());
-    const VertexIndex index(positions);
+    const BoxIndex index(boxesOf(positions));
     Indices found{99};
     for (int i = 0; i < 200; ++i) {
         const glm::vec3 lower = randomPoint();
@@ -120,10 +120,10 @@ TEST(VertexIndex, FindsWhatLiesInABoxItsBorderIncluded) {
                 p.z <= upper.z)
                 expected.push_back(k);
         }
-        index.inBox(lower, upper, found);
+        index.meeting({lower, upper}, found);
         EXPECT_EQ(found, expected);
     }
-    VertexIndex(std::vector<glm::vec3>{}).inBox(glm::vec3(0.0F), glm::vec3(1.0F), found);
+    BoxIndex({}).meeting({glm::vec3(0.0F), glm::vec3(1.0F)}, found);
     EXPECT_TRUE(found.empty());
 }
 
