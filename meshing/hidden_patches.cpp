@@ -1,10 +1,10 @@
 #include "meshing/hidden_patches.h"
 
 #include "core/parallel.h"
-#include "core/random.h"
 #include "meshing/patch_offset.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
+#include "meshing/side_points.h"
 #include "scene/box_index.h"
 #include "scene/surface.h"
 
@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace lambert {
@@ -22,8 +21,6 @@ namespace {
 
 constexpr float kInward = 0.1F;        ///< from a patch's border to its centroid, where it is looked at
 constexpr double kOpposed = -0.999999; ///< cosine between faces that touch
-constexpr int kStrata = 4;             ///< a packet's rays: kStrata × kStrata
-static_assert(kStrata * kStrata == RayPacket::kSize);
 
 /// Looks at one patch after the other.
 class Looker {
@@ -86,23 +83,8 @@ private:
 
     /// Whether all rays to one side meet black backs.
     bool seesBacksAlone(std::size_t patch, const glm::vec3& side, float offset) {
-        const glm::vec3 x = glm::normalize(
-            glm::cross(side, std::abs(side.x) < 0.6F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F)));
-        const glm::vec3 y = glm::cross(side, x);
         for (std::uint32_t point = 0; point < points_.size(); ++point) {
-            for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
-                const auto random = philox({static_cast<std::uint32_t>(patch), point, lane, 2}, 0);
-                const float squaredRadius = (static_cast<float>(lane / kStrata) + uniformFloat(random[0])) / kStrata;
-                const float angle = 2.0F * std::numbers::pi_v<float> *
-                                    (static_cast<float>(lane % kStrata) + uniformFloat(random[1])) / kStrata;
-                const float radius = std::sqrt(squaredRadius);
-                const glm::vec3 direction = radius * (std::cos(angle) * x + std::sin(angle) * y) +
-                                            std::sqrt(std::max(1.0F - squaredRadius, 0.0F)) * side;
-                packet_.directionX[lane] = direction.x;
-                packet_.directionY[lane] = direction.y;
-                packet_.directionZ[lane] = direction.z;
-                packet_.active[lane] = -1;
-            }
+            aimPacket(side, static_cast<std::uint32_t>(patch), point, packet_);
             rays_.closest(points_[point] + offset * side, packet_);
             for (int lane = 0; lane < RayPacket::kSize; ++lane)
                 if (!isBlackBack(packet_.polygon[lane], packet_.facing[lane]) && !liesOnBlackBack(lane)) return false;

@@ -87,23 +87,9 @@ glm::vec3 outside(const Bounds& bounds, const glm::dvec3& direction, const glm::
     return glm::vec3(centre - 1.01 * radius * direction + disk.x * glm::dvec3(frame.x) + disk.y * glm::dvec3(frame.y));
 }
 
-SidePoints emittingSides(const Scene& scene) {
-    return {scene, [](double area, const Material& material) {
-                const Rgb& emitted = material.emittedRadiance;
-                return area * static_cast<double>(emitted.x + emitted.y + emitted.z);
-            }};
-}
-
 SidePoints darkSides(const Scene& scene) {
     return {scene,
             [](double area, const Material& material) { return material.emittedRadiance == Rgb(0.0F) ? area : 0.0; }};
-}
-
-/// Where rays begin that leave the point.
-glm::vec3 above(const RayCaster& rays, const SidePoint& side) {
-    const Scene& scene = rays.scene();
-    const auto size = static_cast<float>(std::sqrt(polygonArea(scene, scene.polygons[side.polygon])));
-    return side.point + rays.originOffset(size) * side.normal;
 }
 
 } // namespace
@@ -118,7 +104,7 @@ LightFate fateOfEmission(const RayCaster& rays) {
         const OrthonormalBasis frame(from.normal);
         const glm::vec3 local(cosineHemisphere({three, four}));
         const glm::vec3 direction = local.x * frame.x + local.y * frame.y + local.z * frame.z;
-        if (!count.trace(above(rays, from), direction)) count.countNothing();
+        if (!count.trace(from.above(rays), direction)) count.countNothing();
     }
     LightFate fate = count.fate();
     fate.arrives = fate.arrives || emissionArrives(rays);
@@ -168,7 +154,7 @@ bool emissionArrives(const RayCaster& rays) {
         const SidePoint from = emitters.at((k + 0.5) / kLines, {one, two}), to = receivers.at(share, {three, four});
         const glm::vec3 line = to.point - from.point;
         if (!(glm::dot(line, from.normal) > 0.0F) || !(glm::dot(line, to.normal) < 0.0F)) continue;
-        const glm::vec3 begin = above(rays, from), end = above(rays, to);
+        const glm::vec3 begin = from.above(rays), end = to.above(rays);
         if (!rays.occluded(Ray{begin, end - begin, 1.0F})) return true;
     }
     return false;

@@ -1,13 +1,21 @@
 #include "meshing/side_points.h"
 
+#include "core/random.h"
 #include "meshing/plane_frame.h"
 #include "scene/polygon_points.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace lambert {
+
+glm::vec3 SidePoint::above(const RayCaster& rays) const {
+    const auto size = static_cast<float>(std::sqrt(polygonArea(rays.scene(), rays.scene().polygons[polygon])));
+    return point + rays.originOffset(size) * normal;
+}
 
 SidePoints::SidePoints(const Scene& scene, const std::function<double(double, const Material&)>& weight)
     : scene_(scene) {
@@ -33,6 +41,34 @@ SidePoint SidePoints::at(double share, const glm::dvec2& u) const {
     const PlaneFrame frame = planeFrame(scene_, polygon);
     const glm::vec3 normal(glm::cross(frame.axisX, frame.axisY)); // of a sliver better than its area vector
     return {polygonPoint(scene_, side.polygon, chart.x, chart.y), side.back ? -normal : normal, side.polygon};
+}
+
+SidePoints emittingSides(const Scene& scene) {
+    return {scene, [](double area, const Material& material) {
+                const Rgb& emitted = material.emittedRadiance;
+                return area * static_cast<double>(emitted.x + emitted.y + emitted.z);
+            }};
+}
+
+void aimPacket(const glm::vec3& normal, std::uint32_t one, std::uint32_t two, RayPacket& packet) {
+    constexpr std::uint32_t kStrata = 4;
+    static_assert(kStrata * kStrata == RayPacket::kSize);
+    const glm::vec3 x = glm::normalize(
+        glm::cross(normal, std::abs(normal.x) < 0.6F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F)));
+    const glm::vec3 y = glm::cross(normal, x);
+    for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
+        const auto random = philox({one, two, lane, 2}, 0);
+        const float squaredRadius = (static_cast<float>(lane / kStrata) + uniformFloat(random[0])) / kStrata;
+        const float angle =
+            2.0F * std::numbers::pi_v<float> * (static_cast<float>(lane % kStrata) + uniformFloat(random[1])) / kStrata;
+        const float radius = std::sqrt(squaredRadius);
+        const glm::vec3 direction = radius * (std::cos(angle) * x + std::sin(angle) * y) +
+                                    std::sqrt(std::max(1.0F - squaredRadius, 0.0F)) * normal;
+        packet.directionX[lane] = direction.x;
+        packet.directionY[lane] = direction.y;
+        packet.directionZ[lane] = direction.z;
+        packet.active[lane] = -1;
+    }
 }
 
 } // namespace lambert

@@ -16,6 +16,9 @@ struct SidePoint {
     glm::vec3 point;  //!< metres, on the polygon
     glm::vec3 normal; //!< unit length, to the side
     std::uint32_t polygon;
+
+    /// Where rays begin that leave it.
+    glm::vec3 above(const RayCaster& rays) const;
 };
 
 /// Points on those sides of a prepared scene that are not black, spread by a weight.
@@ -38,5 +41,11 @@ private:
     const Scene& scene_;
     std::vector<Side> sides_;
 };
+
+/// Those that emit, by what they emit.
+SidePoints emittingSides(const Scene& scene);
+
+/// Directions of a packet around the unit `normal`, density cos/π, one in each of 4 × 4 strata. `one` and `two` tell packets apart.
+void aimPacket(const glm::vec3& normal, std::uint32_t one, std::uint32_t two, RayPacket& packet);
 
 } // namespace lambert
