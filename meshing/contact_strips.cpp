@@ -1,6 +1,7 @@
 #include "meshing/contact_strips.h"
 
 #include "meshing/face_lines.h"
+#include "meshing/plane_frame.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
@@ -21,8 +22,6 @@ constexpr double kClear = 0.3;        ///< of that distance, which lines keep fr
 constexpr double kShallow = 0.3;      ///< sine of an angle, below which a line runs along another
 constexpr double kSharpest = 1.75; ///< radians: at a sharper turn offset lines are not drawn out to their meeting point
 constexpr double kDrawnOut = 1.2;  ///< in distances, beyond the end of the edge at most
-
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
 using Chain = std::vector<glm::dvec2>;
 

@@ -3,34 +3,10 @@
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace lambert {
-
-namespace {
-
-/// Distance of a point in the plane from the nearest edge, positive inside the (convex) polygon.
-double depthInside(const Scene& scene, const Polygon& polygon, const PlaneFrame& frame, glm::dvec2 point) {
-    double depth = std::numeric_limits<double>::max();
-    for (int k = 0; k < polygon.size(); ++k) {
-        const glm::dvec2 a = frame.project(corner(scene, polygon, k));
-        const glm::dvec2 b = frame.project(corner(scene, polygon, (k + 1) % polygon.size()));
-        const glm::dvec2 edge = b - a;
-        const double length = glm::length(edge);
-        if (length > 0.0) depth = std::min(depth, (edge.x * (point.y - a.y) - edge.y * (point.x - a.x)) / length);
-    }
-    return depth;
-}
-
-double distanceFromPlane(const PlaneFrame& frame, const glm::vec3& point) {
-    return std::abs(glm::dot(glm::dvec3(point) - frame.origin, glm::cross(frame.axisX, frame.axisY)));
-}
-
-} // namespace
 
 std::vector<PlanarContact> findContacts(const Scene& scene, const BoxIndex& index) {
     const float tolerance = 2.0F * weldTolerance(scene);
@@ -41,13 +17,14 @@ std::vector<PlanarContact> findContacts(const Scene& scene, const BoxIndex& inde
         index.meeting(boundsOf(scene, polygon).grownBy(tolerance), found);
         if (found.size() <= static_cast<std::size_t>(polygon.size())) continue;
         const PlaneFrame frame = planeFrame(scene, polygon);
+        const std::vector<glm::dvec2> border = frame.outline(scene, polygon);
         PlanarContact contact{i, {}, tolerance};
         bool touched = false;
         for (const std::uint32_t vertex : found) {
             if (std::find(polygon.vertices.begin(), polygon.vertices.end(), vertex) != polygon.vertices.end()) continue;
             const glm::vec3 p = scene.positions[vertex];
-            if (distanceFromPlane(frame, p) > static_cast<double>(tolerance)) continue;
-            const double depth = depthInside(scene, polygon, frame, frame.project(p));
+            if (std::abs(frame.height(p)) > static_cast<double>(tolerance)) continue;
+            const double depth = depthInside(border, frame.project(p));
             if (depth < -static_cast<double>(tolerance)) continue;
             touched = true; // inside, or on the border, whence an edge may cross the polygon
             if (depth > static_cast<double>(tolerance)) contact.vertices.push_back(vertex);
@@ -61,6 +38,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarCo
                                                                   const EdgeDivision& division) {
     const Polygon& polygon = scene.polygons[contact.polygon];
     const PlaneFrame frame = planeFrame(scene, polygon);
+    const std::vector<glm::dvec2> border = frame.outline(scene, polygon);
     // Vertices of the scene on the border count as ends too.
     std::vector<std::uint32_t> ends = contact.vertices;
     for (int k = 0; k < polygon.size(); ++k)
@@ -75,8 +53,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> contactLines(const PlanarCo
             const auto [a, b] = division.segment(segment);
             if (a != end || !std::binary_search(ends.begin(), ends.end(), b)) continue;
             const glm::dvec2 middle = 0.5 * (frame.project(scene.positions[a]) + frame.project(scene.positions[b]));
-            if (depthInside(scene, polygon, frame, middle) <= static_cast<double>(contact.tolerance))
-                continue; // along the border
+            if (depthInside(border, middle) <= static_cast<double>(contact.tolerance)) continue; // along the border
             const std::vector<std::uint32_t> vertices = division.segmentVertices(segment);
             for (std::size_t k = 0; k + 1 < vertices.size(); ++k) lines.emplace_back(vertices[k], vertices[k + 1]);
         }

@@ -19,15 +19,11 @@ using Triangle = std::array<std::uint32_t, 3>;
 using Chain = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>; ///< directed
 
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
-
 double areaOf(const std::vector<glm::dvec2>& points, const Triangle& t) {
     return 0.5 * cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
 }
 
 bool hasSurface(const Polygon& polygon) { return polygon.surface != kNone || polygon.backSurface != kNone; }
-
-glm::dvec3 frontOf(const PlaneFrame& frame) { return glm::cross(frame.axisX, frame.axisY); }
 
 std::uint32_t largest(const Scene& scene, std::span<const std::uint32_t> polygons) {
     return *std::max_element(polygons.begin(), polygons.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -81,7 +77,7 @@ public:
         cells_.frame = planeFrame(scene, scene.polygons[largest(scene, polygons)]);
         cells_.polygons.assign(polygons.begin(), polygons.end());
         for (const std::uint32_t p : polygons)
-            cells_.along.push_back(glm::dot(frontOf(planeFrame(scene, scene.polygons[p])), frontOf(cells_.frame)) >
+            cells_.along.push_back(glm::dot(planeFrame(scene, scene.polygons[p]).normal(), cells_.frame.normal()) >
                                    0.0);
         addVertices();
     }

@@ -52,8 +52,6 @@ std::uint32_t surfaceOf(const Scene& scene, const PolygonSide& side) {
     return side.back ? polygon.backSurface : polygon.surface;
 }
 
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
-
 /// The corners of a polygon on one of whose triangles its surface is linear.
 std::array<std::size_t, 3> linearCorners(const Polygon& polygon, Half half) {
     if (!polygon.isQuad()) return {0, 1, 2};

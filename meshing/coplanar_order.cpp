@@ -87,12 +87,10 @@ void CoplanarOrder::showWhatGoesOn(const std::vector<CoplanarCells>& cells, doub
                  it != places.end() && it->vertex == vertex; ++it) {
                 if (scene_.polygons[it->polygon].material != polygon.material) continue;
                 const PlaneFrame& frame = cells[it->cells].frame;
-                const glm::dvec3 normal = glm::cross(frame.axisX, frame.axisY);
                 bool inPlane = true;
                 for (int n = 0; n < polygon.size(); ++n)
-                    inPlane = inPlane && std::abs(glm::dot(glm::dvec3(corner(scene_, polygon, n)) - frame.origin,
-                                                           normal)) <= tolerance;
-                const bool along = glm::dot(glm::dvec3(areaVector(scene_, polygon)), normal) > 0.0;
+                    inPlane = inPlane && std::abs(frame.height(corner(scene_, polygon, n))) <= tolerance;
+                const bool along = glm::dot(glm::dvec3(areaVector(scene_, polygon)), frame.normal()) > 0.0;
                 if (inPlane) goOn.emplace_back(it->cells, SurfaceKey(polygon.material, along));
             }
         }

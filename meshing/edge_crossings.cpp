@@ -42,9 +42,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> uniqueEdges(const Scene& sc
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     edges.reserve(scene.polygons.size() * 3);
     for (const Polygon& polygon : scene.polygons)
-        for (int k = 0; k < polygon.size(); ++k)
-            edges.push_back(edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
-                                    polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]));
+        for (int k = 0; k < polygon.size(); ++k) edges.push_back(edgeOf(polygon, k));
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;

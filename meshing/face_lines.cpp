@@ -1,6 +1,7 @@
 #include "meshing/face_lines.h"
 
 #include "meshing/pair_triangles.h"
+#include "meshing/plane_frame.h"
 #include "meshing/plane_lines.h"
 
 #include <glm/common.hpp>
@@ -15,8 +16,6 @@
 namespace lambert {
 
 namespace {
-
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// Parts of a line, from 0 to 1; empty if from >= to.
 struct Interval {
@@ -103,16 +102,6 @@ FaceDrawing::FaceDrawing(std::span<const glm::dvec2> border,
                          std::span<const std::pair<glm::dvec2, glm::dvec2>> contacts, const Options& options)
     : border_(border.begin(), border.end()), contacts_(contacts.begin(), contacts.end()), options_(options) {}
 
-/// Depth below the border, metres; negative outside.
-double FaceDrawing::depth(glm::dvec2 point) const {
-    double depth = std::numeric_limits<double>::max();
-    for (std::size_t k = 0; k < border_.size(); ++k) {
-        const glm::dvec2 edge = border_[(k + 1) % border_.size()] - border_[k];
-        depth = std::min(depth, cross(edge, point - border_[k]) / glm::length(edge));
-    }
-    return depth;
-}
-
 bool FaceDrawing::clip(DrawnLine& line) const {
     Interval inside{0.0, 1.0};
     for (std::size_t k = 0; k < border_.size(); ++k) {
@@ -182,7 +171,8 @@ FaceLines FaceDrawing::finish() && {
     const std::vector<std::vector<std::uint32_t>> chains = cutLines(drawing, options_.tolerance);
     FaceLines result;
     if (chains.empty()) return result;
-    for (const glm::dvec2& point : drawing.points) result.onBorder.push_back(depth(point) <= options_.tolerance);
+    for (const glm::dvec2& point : drawing.points)
+        result.onBorder.push_back(depthInside(border_, point) <= options_.tolerance);
     std::set<std::pair<std::uint32_t, std::uint32_t>> known; // each once, also where two edges lie above each other
     for (std::size_t i = 0; i < chains.size(); ++i) {
         const FaceSegment& line = drawn[i].segment;
@@ -194,7 +184,8 @@ FaceLines FaceDrawing::finish() && {
             const std::uint32_t from = chains[i][k], to = chains[i][k + 1];
             if (!known.insert(edgeKey(from, to)).second) continue;
             const glm::dvec2 middle = 0.5 * (drawing.points[from] + drawing.points[to]);
-            if (result.onBorder[from] && result.onBorder[to] && depth(middle) <= options_.tolerance) continue;
+            if (result.onBorder[from] && result.onBorder[to] && depthInside(border_, middle) <= options_.tolerance)
+                continue;
             const DrawnLine piece =
                 drawn[i].part(k == 0 ? 0.0 : partAt(from), k + 2 == chains[i].size() ? 1.0 : partAt(to));
             result.lines.push_back({from, to, piece.start, piece.end, piece.edgeLength});

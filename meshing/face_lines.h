@@ -63,7 +63,6 @@ public:
 private:
     bool clip(DrawnLine& line) const;
     void reachBorder(DrawnLine& line, double within) const;
-    double depth(glm::dvec2 point) const;
 
     std::vector<glm::dvec2> border_;
     std::vector<std::pair<glm::dvec2, glm::dvec2>> contacts_;

@@ -16,8 +16,6 @@ namespace {
 constexpr double kClearance = 0.5;     ///< lattice points keep this far from lines, in spacings
 constexpr double kShortestPart = 0.25; ///< of a line at its ends, of the others
 
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
-
 double distanceToSegment(glm::dvec2 point, glm::dvec2 a, glm::dvec2 b) {
     const glm::dvec2 direction = b - a;
     const double squaredLength = glm::dot(direction, direction);

@@ -68,17 +68,10 @@ private:
         const Polygon& polygon = scene_.polygons[index];
         if (isOccluder(scene_, polygon) || hasHoles(scene_, polygon)) return false;
         const PlaneFrame frame = planeFrame(scene_, polygon);
-        const glm::dvec3 up = glm::cross(frame.axisX, frame.axisY);
-        if (glm::dot(up, normal) > kOpposed) return false;
-        if (std::abs(glm::dot(glm::dvec3(point) - frame.origin, up)) > static_cast<double>(tolerance_)) return false;
-        const glm::dvec2 p = frame.project(point);
-        for (int k = 0; k < polygon.size(); ++k) {
-            const glm::dvec2 a = frame.project(corner(scene_, polygon, k));
-            const glm::dvec2 edge = frame.project(corner(scene_, polygon, (k + 1) % polygon.size())) - a;
-            if (edge.x * (p.y - a.y) - edge.y * (p.x - a.x) < -static_cast<double>(tolerance_) * glm::length(edge))
-                return false;
-        }
-        return true;
+        if (glm::dot(frame.normal(), normal) > kOpposed) return false;
+        const auto tolerance = static_cast<double>(tolerance_);
+        return std::abs(frame.height(point)) <= tolerance &&
+               depthInside(frame.outline(scene_, polygon), frame.project(point)) >= -tolerance;
     }
 
     /// Whether all rays to one side meet black backs.
@@ -102,8 +95,7 @@ private:
         const std::uint32_t polygon = packet_.polygon[lane];
         if (polygon == kNone || packet_.facing[lane] >= 0.0F) return false;
         const glm::vec3 point = polygonPoint(scene_, polygon, packet_.u[lane], packet_.v[lane]);
-        const PlaneFrame frame = planeFrame(scene_, scene_.polygons[polygon]);
-        const glm::dvec3 normal = glm::cross(frame.axisX, frame.axisY);
+        const glm::dvec3 normal = planeFrame(scene_, scene_.polygons[polygon]).normal();
         index_.meeting(Bounds{point, point}.grownBy(tolerance_), found_);
         return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t other) {
             return other != polygon && isBlackBack(other, 0.0F) && touches(other, point, normal);

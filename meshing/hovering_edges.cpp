@@ -35,9 +35,7 @@ struct Edges {
         for (std::uint32_t i = 0; i < scene.polygons.size(); ++i) {
             const Polygon& polygon = scene.polygons[i];
             for (int k = 0; k < polygon.size(); ++k) {
-                const Edge key = edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
-                                         polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]);
-                const auto edge = std::lower_bound(keys.begin(), keys.end(), key) - keys.begin();
+                const auto edge = std::lower_bound(keys.begin(), keys.end(), edgeOf(polygon, k)) - keys.begin();
                 at.emplace_back(static_cast<std::uint32_t>(edge), i);
             }
         }
@@ -53,8 +51,6 @@ struct Edges {
         return std::span(polygons).subspan(first[edge], first[edge + 1] - first[edge]);
     }
 };
-
-glm::dvec3 normalOf(const PlaneFrame& frame) { return glm::cross(frame.axisX, frame.axisY); }
 
 double emissionOf(const Scene& scene, const Polygon& polygon) {
     double emission = 0.0;
@@ -79,12 +75,11 @@ public:
           edges_(edges),
           below_(polygon),
           frame_(planeFrame(scene, scene.polygons[polygon])),
-          normal_(normalOf(frame_)),
+          normal_(frame_.normal()),
           reach_(reach),
-          least_(3.0 * static_cast<double>(weldTolerance(scene))) {
+          least_(3.0 * static_cast<double>(weldTolerance(scene))),
+          border_(frame_.outline(scene, scene.polygons[polygon])) {
         if (back) normal_ = -normal_;
-        for (int k = 0; k < scene.polygons[polygon].size(); ++k)
-            border_.push_back(frame_.project(corner(scene, scene.polygons[polygon], k)));
     }
 
     std::vector<Outline> outlines(std::span<const std::uint32_t> near) const {
@@ -149,7 +144,7 @@ private:
         const PlaneFrame frame = planeFrame(scene_, scene_.polygons[polygon]);
         const glm::dvec3 a(scene_.positions[edge.first]);
         const glm::dvec3 along = glm::normalize(glm::dvec3(scene_.positions[edge.second]) - a);
-        glm::dvec3 inward = glm::cross(normalOf(frame), along);
+        glm::dvec3 inward = glm::cross(frame.normal(), along);
         glm::dvec3 middle(0.0);
         const int count = scene_.polygons[polygon].size();
         for (int k = 0; k < count; ++k)
@@ -161,7 +156,7 @@ private:
     /// Whether a polygon is so little inclined to the one below that it is over it. Those of a ball that are have a rim
     /// without gaps, none of whose edges is steep.
     bool isOver(std::uint32_t polygon) const {
-        const double cosine = glm::dot(normalOf(planeFrame(scene_, scene_.polygons[polygon])), normal_);
+        const double cosine = glm::dot(planeFrame(scene_, scene_.polygons[polygon]).normal(), normal_);
         return cosine * cosine >= 1.0 - kSteep * kSteep;
     }
 
@@ -183,7 +178,7 @@ private:
     bool faces(std::uint32_t polygon, double gap) const {
         if (reachOver(scene_, scene_.polygons[polygon], reach_) < gap) return false;
         if (isOccluder(scene_, scene_.polygons[polygon]) || !isOver(polygon)) return false;
-        const double turned = glm::dot(normalOf(planeFrame(scene_, scene_.polygons[polygon])), normal_);
+        const double turned = glm::dot(planeFrame(scene_, scene_.polygons[polygon]).normal(), normal_);
         return turned < 0.0 || scene_.polygons[polygon].backMaterial != kNone;
     }
 
@@ -248,11 +243,11 @@ HoveringOutlines findHoveringOutlines(const Scene& scene, double reach) {
             }
             if (outlines[i].empty()) continue;
             const PlaneFrame frame = planeFrame(scene, polygon);
-            const auto height = [&](std::uint32_t vertex) {
-                return std::abs(glm::dot(glm::dvec3(scene.positions[vertex]) - frame.origin, normalOf(frame)));
+            const auto touches = [&](std::uint32_t vertex) {
+                return std::abs(frame.height(scene.positions[vertex])) <= touching;
             };
             for (const std::uint32_t edge : near)
-                if (height(edges.keys[edge].first) <= touching && height(edges.keys[edge].second) <= touching)
+                if (touches(edges.keys[edge].first) && touches(edges.keys[edge].second))
                     contacts[i].push_back(edges.keys[edge]);
         }
     });
@@ -263,9 +258,7 @@ HoveringOutlines findHoveringOutlines(const Scene& scene, double reach) {
         const Polygon& polygon = scene.polygons[i];
         for (const Edge& edge : contacts[i]) {
             bool own = false;
-            for (int k = 0; k < polygon.size(); ++k)
-                own = own || edge == edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
-                                             polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]);
+            for (int k = 0; k < polygon.size(); ++k) own = own || edge == edgeOf(polygon, k);
             if (!own) result.touching[i].push_back(edge);
         }
     }

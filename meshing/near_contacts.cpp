@@ -151,8 +151,7 @@ NearContacts NearContactFinder::find(double budget) const {
         for (std::size_t i = begin; i < end; ++i) {
             const Polygon& polygon = scene_.polygons[result.contacts[i].polygon];
             const PlaneFrame frame = planeFrame(scene_, polygon);
-            std::vector<glm::dvec2> border;
-            for (int k = 0; k < polygon.size(); ++k) border.push_back(frame.project(corner(scene_, polygon, k)));
+            const std::vector<glm::dvec2> border = frame.outline(scene_, polygon);
             std::vector<std::pair<glm::dvec2, glm::dvec2>> touching;
             if (const auto it = found_.touching.find(result.contacts[i].polygon); it != found_.touching.end())
                 for (const auto& [a, b] : it->second)

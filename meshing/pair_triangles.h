@@ -16,6 +16,11 @@ using Corners = std::array<std::uint32_t, 4>; ///< vertex indices; a triangle en
 inline std::pair<std::uint32_t, std::uint32_t> edgeKey(std::uint32_t a, std::uint32_t b) {
     return a < b ? std::pair(a, b) : std::pair(b, a);
 }
+/// That of a polygon from corner `k` to the next.
+inline std::pair<std::uint32_t, std::uint32_t> edgeOf(const Polygon& polygon, int k) {
+    return edgeKey(polygon.vertices[static_cast<std::size_t>(k)],
+                   polygon.vertices[static_cast<std::size_t>((k + 1) % polygon.size())]);
+}
 
 /// The faces that became one.
 struct FaceOrigin {

@@ -10,8 +10,6 @@ namespace {
 
 using Points = std::vector<glm::dvec2>;
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 /// Area, and the centroid times it; of either orientation.
 struct Moments {
     double area = 0.0;

@@ -6,7 +6,26 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
 namespace lambert {
+
+/// The area of the parallelogram of two vectors of a plane, positive if the second lies to the left of the first.
+inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// How deep a point lies inside a convex, counter-clockwise border, metres; negative outside.
+inline double depthInside(std::span<const glm::dvec2> border, const glm::dvec2& point) {
+    double depth = std::numeric_limits<double>::max();
+    for (std::size_t k = 0; k < border.size(); ++k) {
+        const glm::dvec2 edge = border[(k + 1) % border.size()] - border[k];
+        const double length = glm::length(edge);
+        if (length > 0.0) depth = std::min(depth, cross(edge, point - border[k]) / length);
+    }
+    return depth;
+}
 
 /// Coordinates in the plane of a polygon, in metres: the first axis along its longest edge, the polygon's front seen
 /// counter-clockwise.
@@ -18,6 +37,14 @@ struct PlaneFrame {
         return {glm::dot(d, axisX), glm::dot(d, axisY)};
     }
     glm::vec3 lift(glm::dvec2 point) const { return glm::vec3(origin + point.x * axisX + point.y * axisY); }
+    glm::dvec3 normal() const { return glm::cross(axisX, axisY); }
+    double height(const glm::vec3& point) const { return glm::dot(glm::dvec3(point) - origin, normal()); }
+    /// The corners of a polygon.
+    std::vector<glm::dvec2> outline(const Scene& scene, const Polygon& polygon) const {
+        std::vector<glm::dvec2> corners;
+        for (int k = 0; k < polygon.size(); ++k) corners.push_back(project(corner(scene, polygon, k)));
+        return corners;
+    }
 };
 
 inline PlaneFrame planeFrame(const Scene& scene, const Polygon& polygon) {

@@ -1,6 +1,7 @@
 #include "meshing/plane_lines.h"
 
 #include "meshing/pair_triangles.h"
+#include "meshing/plane_frame.h"
 #include "meshing/weld.h"
 #include "scene/box_index.h"
 
@@ -19,8 +20,6 @@ constexpr int kMostPasses = 8; ///< pieces bend to the points near them, and may
 
 using Chain = std::vector<std::uint32_t>;
 using Piece = std::pair<std::uint32_t, std::uint32_t>;
-
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// The points of a plane as an index of points in space has them.
 std::vector<glm::vec3> flatPoints(const PlaneLines& drawing) {

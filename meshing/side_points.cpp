@@ -38,8 +38,7 @@ SidePoint SidePoints::at(double share, const glm::dvec2& u) const {
     const Side& side = found != sides_.end() ? *found : sides_.back();
     const Polygon& polygon = scene_.polygons[side.polygon];
     const glm::vec2 chart = PolygonPoints(scene_, polygon).chartAt(u);
-    const PlaneFrame frame = planeFrame(scene_, polygon);
-    const glm::vec3 normal(glm::cross(frame.axisX, frame.axisY)); // of a sliver better than its area vector
+    const glm::vec3 normal(planeFrame(scene_, polygon).normal()); // of a sliver better than its area vector
     return {polygonPoint(scene_, side.polygon, chart.x, chart.y), side.back ? -normal : normal, side.polygon};
 }
 
