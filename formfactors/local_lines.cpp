@@ -34,6 +34,10 @@ struct LineArrays {
             next += count;
         }
     }
+
+    Ray at(std::size_t i) const {
+        return {{originX[i], originY[i], originZ[i]}, {directionX[i], directionY[i], directionZ[i]}};
+    }
 };
 
 /// Cosine-distributed directions about the frame's z from the first two coordinates of `points` (dimension by dimension).
@@ -112,9 +116,7 @@ std::vector<Ray> LocalLines::lines(const glm::vec3& origin, const glm::vec3& nor
 std::vector<Ray> LocalLines::inOrder(Lines& lines) const {
     const LineArrays l(lines.coordinates, options_.lines);
     std::vector<Ray> result;
-    for (const std::uint32_t i : lines.order)
-        result.push_back(
-            {{l.originX[i], l.originY[i], l.originZ[i]}, {l.directionX[i], l.directionY[i], l.directionZ[i]}});
+    for (const std::uint32_t i : lines.order) result.push_back(l.at(i));
     return result;
 }
 
@@ -142,13 +144,9 @@ void LocalLines::trace(Lines& lines, RowAccumulator& accumulator) const {
         for (int lane = 0; lane < RayPacket::kSize; ++lane) {
             // Lanes past the end repeat the last line, inactive.
             const std::uint32_t i = lines.order[first + static_cast<std::size_t>(std::min(lane, count - 1))];
-            origins.x[lane] = l.originX[i];
-            origins.y[lane] = l.originY[i];
-            origins.z[lane] = l.originZ[i];
-            packet.directionX[lane] = l.directionX[i];
-            packet.directionY[lane] = l.directionY[i];
-            packet.directionZ[lane] = l.directionZ[i];
-            packet.active[lane] = lane < count ? -1 : 0;
+            const Ray line = l.at(i);
+            origins.set(lane, line.origin);
+            packet.aim(lane, line.direction, lane < count);
         }
         rays_.closest(origins, packet);
         sum.add(packet, count, weight);

@@ -159,13 +159,8 @@ private:
             const int used = static_cast<int>(std::min<std::size_t>(RayPacket::kSize, lines.size() - first));
             for (int lane = 0; lane < RayPacket::kSize; ++lane) {
                 const Ray& line = lines[first + static_cast<std::size_t>(std::min(lane, used - 1))];
-                origins.x[lane] = line.origin.x;
-                origins.y[lane] = line.origin.y;
-                origins.z[lane] = line.origin.z;
-                packet.directionX[lane] = line.direction.x;
-                packet.directionY[lane] = line.direction.y;
-                packet.directionZ[lane] = line.direction.z;
-                packet.active[lane] = lane < used ? -1 : 0;
+                origins.set(lane, line.origin);
+                packet.aim(lane, line.direction, lane < used);
             }
             method_.rays_.closest(origins, packet);
             for (int lane = 0; lane < used; ++lane) {

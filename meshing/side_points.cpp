@@ -61,12 +61,8 @@ void aimPacket(const glm::vec3& normal, std::uint32_t one, std::uint32_t two, Ra
         const float angle =
             2.0F * std::numbers::pi_v<float> * (static_cast<float>(lane % kStrata) + uniformFloat(random[1])) / kStrata;
         const float radius = std::sqrt(squaredRadius);
-        const glm::vec3 direction = radius * (std::cos(angle) * x + std::sin(angle) * y) +
-                                    std::sqrt(std::max(1.0F - squaredRadius, 0.0F)) * normal;
-        packet.directionX[lane] = direction.x;
-        packet.directionY[lane] = direction.y;
-        packet.directionZ[lane] = direction.z;
-        packet.active[lane] = -1;
+        packet.aim(static_cast<int>(lane), radius * (std::cos(angle) * x + std::sin(angle) * y) +
+                                               std::sqrt(std::max(1.0F - squaredRadius, 0.0F)) * normal);
     }
 }
 

@@ -69,12 +69,8 @@ private:
                 {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(sample), 0},
                 options_.seed);
             const glm::vec2 place = placeInPixel(sample, {uniformFloat(bits[0]), uniformFloat(bits[1])});
-            const glm::vec3 direction =
-                rays_.direction(static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
-            packet.directionX[lane] = direction.x;
-            packet.directionY[lane] = direction.y;
-            packet.directionZ[lane] = direction.z;
-            packet.active[lane] = x < options_.width && y < options_.height ? -1 : 0;
+            packet.aim(lane, rays_.direction(static_cast<float>(x) + place.x, static_cast<float>(y) + place.y),
+                       x < options_.width && y < options_.height);
         }
     }
 

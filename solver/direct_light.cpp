@@ -28,7 +28,6 @@ namespace {
 
 constexpr std::uint32_t kMostPoints = 65536;
 constexpr std::uint32_t kMostSkyRays = 1U << 24;
-constexpr float kNoEnd = 1e30F;
 
 /// A patch or a point that looks for light.
 struct Receiver {
@@ -41,10 +40,8 @@ struct Receiver {
 };
 
 /// A ray that finds out whether light arrives.
-struct ShadowRay {
-    glm::vec3 origin, direction;
-    float maxDistance = kNoEnd; ///< in lengths of the direction
-    RgbSum irradiance{0.0};     ///< what arrives if nothing stands between, where that is known beforehand
+struct ShadowRay : Ray {
+    RgbSum irradiance{0.0}; ///< what arrives if nothing stands between, where that is known beforehand
 };
 
 /// Collects rays into packets, and adds up `gain(ray)` of those that get through.
@@ -69,15 +66,7 @@ private:
         ShadowPacket packet;
         for (int lane = 0; lane < ShadowPacket::kSize; ++lane) {
             // Lanes past the end repeat the last ray, inactive.
-            const ShadowRay& ray = pending_[std::min(lane, count_ - 1)];
-            packet.originX[lane] = ray.origin.x;
-            packet.originY[lane] = ray.origin.y;
-            packet.originZ[lane] = ray.origin.z;
-            packet.directionX[lane] = ray.direction.x;
-            packet.directionY[lane] = ray.direction.y;
-            packet.directionZ[lane] = ray.direction.z;
-            packet.maxDistance[lane] = ray.maxDistance;
-            packet.active[lane] = lane < count_ ? -1 : 0;
+            packet.set(lane, pending_[std::min(lane, count_ - 1)], lane < count_);
         }
         rays_.occluded(packet);
         for (int lane = 0; lane < count_; ++lane)
@@ -100,7 +89,7 @@ std::optional<ShadowRay> rayTo(const PunctualLight& light, const Receiver& recei
     if (light.kind == PunctualLight::Kind::Directional) {
         const float cosine = glm::dot(receiver.normal, -light.direction);
         if (!(cosine > 0.0F)) return std::nullopt;
-        return ShadowRay{origin, -light.direction, kNoEnd, static_cast<double>(cosine) * RgbSum(light.intensity)};
+        return ShadowRay{{origin, -light.direction}, static_cast<double>(cosine) * RgbSum(light.intensity)};
     }
     const glm::vec3 toLight = light.position - point;
     const float height = glm::dot(receiver.normal, toLight);
@@ -109,7 +98,7 @@ std::optional<ShadowRay> rayTo(const PunctualLight& light, const Receiver& recei
     const RgbSum intensity(intensityToward(light, -toLight / distance));
     if (intensity == RgbSum(0.0)) return std::nullopt;
     const auto d = static_cast<double>(distance);
-    return ShadowRay{origin, toLight - receiver.offset, 1.0F - endGap / distance,
+    return ShadowRay{{origin, toLight - receiver.offset, 1.0F - endGap / distance},
                      intensity * (static_cast<double>(height) / (d * d * d))};
 }
 
@@ -170,7 +159,7 @@ public:
         const OrthonormalBasis frame(receiver.normal);
         ShadowSum sum(rays, [&](const ShadowRay& ray) { return worth(ray.direction, receiver.normal); });
         const auto add = [&](const glm::vec3& direction, const glm::dvec2& place) {
-            sum.add({receiver.at(place) + receiver.offset, direction});
+            sum.add({{receiver.at(place) + receiver.offset, direction}});
         };
         thread_local OrderedPoints points; // keeps its memory from patch to patch
         points.fill(sampler, byCosine_, seed);

@@ -245,32 +245,16 @@ void EmitterReceiver::addRay(const EmitterTriangle& t, const glm::dvec3& target,
     if (!(before > 0.0 && above > 0.0)) return;
     const glm::vec3 origin(point_ + std::min(lift_, 0.5 * above) * plane_.normal);
     const glm::vec3 way(target + std::min(t.lift, 0.5 * before) * t.normal - glm::dvec3(origin));
-    const int lane = pending_++;
-    packet_.originX[lane] = origin.x;
-    packet_.originY[lane] = origin.y;
-    packet_.originZ[lane] = origin.z;
-    packet_.directionX[lane] = way.x;
-    packet_.directionY[lane] = way.y;
-    packet_.directionZ[lane] = way.z;
-    packet_.maxDistance[lane] = 1.0F;
-    packet_.active[lane] = -1;
-    weight_[lane] = weight;
-    question_[lane] = static_cast<std::uint32_t>(questions().size() - 1);
-    if (pending_ == kLanes) trace();
+    last_ = {origin, way, 1.0F};
+    packet_.set(pending_, last_);
+    weight_[pending_] = weight;
+    question_[pending_] = static_cast<std::uint32_t>(questions().size() - 1);
+    if (++pending_ == kLanes) trace();
 }
 
 void EmitterReceiver::trace() {
     if (pending_ == 0) return;
-    for (int lane = pending_; lane < kLanes; ++lane) { // repeat the last one, inactive
-        packet_.originX[lane] = packet_.originX[pending_ - 1];
-        packet_.originY[lane] = packet_.originY[pending_ - 1];
-        packet_.originZ[lane] = packet_.originZ[pending_ - 1];
-        packet_.directionX[lane] = packet_.directionX[pending_ - 1];
-        packet_.directionY[lane] = packet_.directionY[pending_ - 1];
-        packet_.directionZ[lane] = packet_.directionZ[pending_ - 1];
-        packet_.maxDistance[lane] = 1.0F;
-        packet_.active[lane] = 0;
-    }
+    for (int lane = pending_; lane < kLanes; ++lane) packet_.set(lane, last_, false);
     rays_.occluded(packet_);
     for (int lane = 0; lane < pending_; ++lane)
         if (!packet_.occluded[lane]) questions()[question_[lane]].seen += weight_[lane];

@@ -98,6 +98,7 @@ private:
     glm::dvec3 point_{0.0};
     bool partly_ = false, someSeen_ = false, someHidden_ = false;
     ShadowPacket packet_;
+    Ray last_{}; ///< of the packet
     double weight_[kLanes];
     std::uint32_t question_[kLanes];
     int pending_ = 0;

@@ -160,14 +160,10 @@ void PatchRays::trace(std::uint64_t seed, Batch& batch) const {
     for (std::size_t first = 0; first < count; first += RayPacket::kSize) {
         const std::size_t lanes = std::min<std::size_t>(RayPacket::kSize, count - first);
         for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
-            const std::size_t i = order[first + std::min(lane, lanes - 1)]; // past the end the last one again, inactive
-            origins.x[lane] = batch.origin[i];
-            origins.y[lane] = batch.origin[i + count];
-            origins.z[lane] = batch.origin[i + 2 * count];
-            packet.directionX[lane] = batch.direction[i];
-            packet.directionY[lane] = batch.direction[i + count];
-            packet.directionZ[lane] = batch.direction[i + 2 * count];
-            packet.active[lane] = lane < lanes ? -1 : 0;
+            // Past the end the last one again, inactive.
+            const Ray ray = batch.ray(order[first + std::min(lane, lanes - 1)]);
+            origins.set(static_cast<int>(lane), ray.origin);
+            packet.aim(static_cast<int>(lane), ray.direction, lane < lanes);
         }
         rays_.closest(origins, packet, coherence_);
         findTargets(mesh_.lookup, packet, back(), out(), target);
@@ -181,9 +177,7 @@ void PatchRays::trace(std::uint64_t seed, Batch& batch) const {
 std::vector<Ray> PatchRays::rays(std::uint64_t seed, Batch& batch) const {
     const std::size_t count = make(seed, batch);
     std::vector<Ray> result;
-    for (std::size_t i = 0; i < count; ++i)
-        result.push_back({{batch.origin[i], batch.origin[i + count], batch.origin[i + 2 * count]},
-                          {batch.direction[i], batch.direction[i + count], batch.direction[i + 2 * count]}});
+    for (std::size_t i = 0; i < count; ++i) result.push_back(batch.ray(i));
     return result;
 }
 

@@ -35,6 +35,12 @@ public:
         std::vector<std::uint32_t> bits, keys, runOf, all;
         std::vector<float> unit, origin, direction, cell;
         CellSorter sorter;
+
+        Ray ray(std::size_t i) const {
+            const std::size_t count = runOf.size();
+            return {{origin[i], origin[i + count], origin[i + 2 * count]},
+                    {direction[i], direction[i + count], direction[i + 2 * count]}};
+        }
     };
 
     /// `mesh` and `rays` (of the same scene) must outlive it. `sampler`: Random or Sobol, else throws UsageError.

@@ -127,14 +127,8 @@ public:
             const glm::vec3 origin(block_.endX[i], block_.endY[i], block_.endZ[i]);
             const glm::vec3 direction = directional ? -length_ * light_.direction : light_.position - origin;
             const float distance = glm::length(direction);
-            packet.originX[lane] = origin.x;
-            packet.originY[lane] = origin.y;
-            packet.originZ[lane] = origin.z;
-            packet.directionX[lane] = direction.x;
-            packet.directionY[lane] = direction.y;
-            packet.directionZ[lane] = direction.z;
-            packet.maxDistance[lane] = directional ? 1.0F : std::max(0.0F, 1.0F - endGap_ / distance);
-            packet.active[lane] = lane < count && distance > 0.0F ? -1 : 0;
+            packet.set(lane, {origin, direction, directional ? 1.0F : std::max(0.0F, 1.0F - endGap_ / distance)},
+                       lane < count && distance > 0.0F);
         }
     }
     ShadowPacket packet;

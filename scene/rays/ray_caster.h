@@ -30,6 +30,13 @@ struct alignas(64) RayPacket {
     std::uint32_t polygon[kSize]; //!< out: kNone where nothing was hit, and for inactive rays
     float u[kSize], v[kSize];     //!< out: chart of the polygon
     float facing[kSize];          //!< out: direction · geometric normal; negative on the front
+
+    void aim(int lane, const glm::vec3& direction, bool isActive = true) {
+        directionX[lane] = direction.x;
+        directionY[lane] = direction.y;
+        directionZ[lane] = direction.z;
+        active[lane] = isActive ? -1 : 0;
+    }
 };
 
 /// How near to each other the rays of a packet are; decides how they are traced, not what they hit.
@@ -41,6 +48,12 @@ enum class Coherence {
 /// Origins of a packet's rays, if they do not share one.
 struct alignas(64) RayOrigins {
     float x[RayPacket::kSize], y[RayPacket::kSize], z[RayPacket::kSize];
+
+    void set(int lane, const glm::vec3& origin) {
+        x[lane] = origin.x;
+        y[lane] = origin.y;
+        z[lane] = origin.z;
+    }
 };
 
 /// 16 rays of which is asked only whether they are free; laid out for vector code.
@@ -51,6 +64,17 @@ struct alignas(64) ShadowPacket {
     float maxDistance[kSize]; //!< in lengths of the direction
     int active[kSize];        //!< -1 for a ray to be traced, 0 for none
     bool occluded[kSize];     //!< out: something lies on the ray before its maxDistance; false for inactive rays
+
+    void set(int lane, const Ray& ray, bool isActive = true) {
+        originX[lane] = ray.origin.x;
+        originY[lane] = ray.origin.y;
+        originZ[lane] = ray.origin.z;
+        directionX[lane] = ray.direction.x;
+        directionY[lane] = ray.direction.y;
+        directionZ[lane] = ray.direction.z;
+        maxDistance[lane] = ray.maxDistance;
+        active[lane] = isActive ? -1 : 0;
+    }
 };
 
 /// The point of a polygon with chart coordinates (u, v). A triangle's chart is v0 + u (v1 − v0) + v (v2 − v0).
