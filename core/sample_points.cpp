@@ -1,6 +1,7 @@
 #include "core/sample_points.h"
 
 #include "core/low_discrepancy.h"
+#include "core/named.h"
 #include "core/random.h"
 #include "core/vector_clones.h"
 
@@ -36,26 +37,13 @@ std::uint32_t roundedUpRoot(std::uint32_t n) {
     return root;
 }
 
-} // namespace
-
-namespace {
-
-constexpr std::array<std::pair<std::string_view, Sampler>, 4> kNames{{{"random", Sampler::Random},
-                                                                      {"stratified", Sampler::Stratified},
-                                                                      {"halton", Sampler::Halton},
-                                                                      {"sobol", Sampler::Sobol}}};
+constexpr std::array kNames{Named{Sampler::Random, "random"}, Named{Sampler::Stratified, "stratified"},
+                            Named{Sampler::Halton, "halton"}, Named{Sampler::Sobol, "sobol"}};
 
 } // namespace
 
-std::optional<Sampler> samplerByName(std::string_view name) {
-    for (const auto& [known, sampler] : kNames)
-        if (known == name) return sampler;
-    return std::nullopt;
-}
-
-std::string_view nameOf(Sampler sampler) {
-    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return name.second == sampler; })->first;
-}
+std::optional<Sampler> samplerByName(std::string_view name) { return valueNamed(kNames, name); }
+std::string_view nameOf(Sampler sampler) { return rowOf(kNames, sampler).name; }
 
 SamplePoints::SamplePoints(Sampler sampler, std::uint32_t count, std::uint32_t dimensions, std::uint64_t seed)
     : sampler_(sampler), count_(count), seed_(seed) {

@@ -1,5 +1,7 @@
 #include "formfactors/form_factor_matrix.h"
 
+#include "core/named.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,21 +11,14 @@ namespace lambert {
 
 namespace {
 
-struct StorageFacts {
-    std::string_view name;
-    MatrixStorage storage;
+struct StorageFacts : Named<MatrixStorage> {
     double bytes; //!< per factor
 };
 constexpr std::array<StorageFacts, 3> kStorages{{
-    {"double", MatrixStorage::Double, 12.0},
-    {"float", MatrixStorage::Float, 8.0},
-    {"compact", MatrixStorage::Compact, 3.01} // some steps need five bytes
+    {{MatrixStorage::Double, "double"}, 12.0},
+    {{MatrixStorage::Float, "float"}, 8.0},
+    {{MatrixStorage::Compact, "compact"}, 3.01} // some steps need five bytes
 }};
-
-const StorageFacts& factsOf(MatrixStorage storage) {
-    return *std::find_if(kStorages.begin(), kStorages.end(),
-                         [&](const StorageFacts& known) { return known.storage == storage; });
-}
 
 double entrySum(const FormFactorRow& row) {
     double sum = 0.0;
@@ -35,15 +30,9 @@ double entrySum(const FormFactorRow& row) {
 
 double FormFactorRow::sum() const { return entrySum(*this) + back + out; }
 
-std::optional<MatrixStorage> storageByName(std::string_view name) {
-    for (const StorageFacts& known : kStorages)
-        if (known.name == name) return known.storage;
-    return std::nullopt;
-}
-
-std::string_view nameOf(MatrixStorage storage) { return factsOf(storage).name; }
-
-double bytesPerFactor(MatrixStorage storage) { return factsOf(storage).bytes; }
+std::optional<MatrixStorage> storageByName(std::string_view name) { return valueNamed(kStorages, name); }
+std::string_view nameOf(MatrixStorage storage) { return rowOf(kStorages, storage).name; }
+double bytesPerFactor(MatrixStorage storage) { return rowOf(kStorages, storage).bytes; }
 
 FormFactorMatrix::FormFactorMatrix(std::size_t patches, MatrixStorage storage) : storage_(storage), rows_(patches) {}
 

@@ -1,6 +1,7 @@
 #include "formfactors/transport.h"
 
 #include "core/error.h"
+#include "core/named.h"
 #include "core/parallel.h"
 #include "formfactors/closed_form_method.h"
 #include "formfactors/global_lines.h"
@@ -21,22 +22,16 @@ namespace lambert {
 
 namespace {
 
-struct MethodTraits {
-    TransportMethod method;
-    std::string_view name;
+struct MethodTraits : Named<TransportMethod> {
     bool resolution, lines, rows, pointRows;
 };
 
-constexpr std::array kMethods{MethodTraits{TransportMethod::Auto, "auto", false, false, true, true},
-                              MethodTraits{TransportMethod::Hemicube, "hemicube", true, false, true, true},
-                              MethodTraits{TransportMethod::Hemisphere, "hemisphere", true, false, true, true},
-                              MethodTraits{TransportMethod::LocalLines, "local-lines", false, true, true, true},
-                              MethodTraits{TransportMethod::GlobalLines, "global-lines", false, true, false, false},
-                              MethodTraits{TransportMethod::ClosedForm, "closed-form", false, false, true, true}};
-
-const MethodTraits& traitsOf(TransportMethod method) {
-    return *std::find_if(kMethods.begin(), kMethods.end(), [&](const MethodTraits& t) { return t.method == method; });
-}
+constexpr std::array kMethods{MethodTraits{{TransportMethod::Auto, "auto"}, false, false, true, true},
+                              MethodTraits{{TransportMethod::Hemicube, "hemicube"}, true, false, true, true},
+                              MethodTraits{{TransportMethod::Hemisphere, "hemisphere"}, true, false, true, true},
+                              MethodTraits{{TransportMethod::LocalLines, "local-lines"}, false, true, true, true},
+                              MethodTraits{{TransportMethod::GlobalLines, "global-lines"}, false, true, false, false},
+                              MethodTraits{{TransportMethod::ClosedForm, "closed-form"}, false, false, true, true}};
 
 constexpr double kBytesPerRow = 96.0;   ///< beside its factors, with the allocator's
 constexpr double kPixelsPerRay = 0.125; ///< rays between pairs in the time of as many of a hemicube's
@@ -137,24 +132,13 @@ void traceLines(const GlobalLines& lines, GlobalLineCounts& counts, Progress& pr
 
 } // namespace
 
-std::optional<TransportMethod> methodByName(std::string_view name) {
-    for (const MethodTraits& traits : kMethods)
-        if (traits.name == name) return traits.method;
-    return std::nullopt;
-}
-
-std::string_view nameOf(TransportMethod method) { return traitsOf(method).name; }
-
-std::vector<std::string> methodNames() {
-    std::vector<std::string> names;
-    for (const MethodTraits& traits : kMethods) names.emplace_back(traits.name);
-    return names;
-}
-
-bool hasResolution(TransportMethod method) { return traitsOf(method).resolution; }
-bool hasLines(TransportMethod method) { return traitsOf(method).lines; }
-bool hasRows(TransportMethod method) { return traitsOf(method).rows; }
-bool hasPointRows(TransportMethod method) { return traitsOf(method).pointRows; }
+std::optional<TransportMethod> methodByName(std::string_view name) { return valueNamed(kMethods, name); }
+std::string_view nameOf(TransportMethod method) { return rowOf(kMethods, method).name; }
+std::vector<std::string> methodNames() { return namesIn(kMethods); }
+bool hasResolution(TransportMethod method) { return rowOf(kMethods, method).resolution; }
+bool hasLines(TransportMethod method) { return rowOf(kMethods, method).lines; }
+bool hasRows(TransportMethod method) { return rowOf(kMethods, method).rows; }
+bool hasPointRows(TransportMethod method) { return rowOf(kMethods, method).pointRows; }
 
 std::string TransportPlan::effort() const {
     std::string text(nameOf(options.method));

@@ -1,6 +1,7 @@
 #include "solver/line_solvers.h"
 
 #include "core/error.h"
+#include "core/named.h"
 #include "solver/random_walks.h"
 
 #include <fmt/format.h>
@@ -11,12 +12,8 @@ namespace lambert {
 
 namespace {
 
-struct LineSolverTraits {
-    LineSolver solver;
-    std::string_view name;
-};
-constexpr std::array kSolvers{LineSolverTraits{LineSolver::Stochastic, "stochastic"},
-                              LineSolverTraits{LineSolver::RandomWalk, "random-walk"}};
+constexpr std::array kSolvers{Named{LineSolver::Stochastic, "stochastic"},
+                              Named{LineSolver::RandomWalk, "random-walk"}};
 
 std::uint64_t mostRays(const LineSolverOptions& o) { return o.rays.value_or(LineSolverOptions::kMostRays); }
 
@@ -47,19 +44,9 @@ StochasticSolution walk(const SolverProblem& problem, const PatchMesh& mesh, con
 
 } // namespace
 
-std::optional<LineSolver> lineSolverByName(std::string_view name) {
-    for (const LineSolverTraits& traits : kSolvers)
-        if (traits.name == name) return traits.solver;
-    return std::nullopt;
-}
-
-std::string_view nameOf(LineSolver solver) { return kSolvers.at(static_cast<std::size_t>(solver)).name; }
-
-std::vector<std::string> lineSolverNames() {
-    std::vector<std::string> names;
-    for (const LineSolverTraits& traits : kSolvers) names.emplace_back(traits.name);
-    return names;
-}
+std::optional<LineSolver> lineSolverByName(std::string_view name) { return valueNamed(kSolvers, name); }
+std::string_view nameOf(LineSolver solver) { return rowOf(kSolvers, solver).name; }
+std::vector<std::string> lineSolverNames() { return namesIn(kSolvers); }
 
 void checkLineSolver(const LineSolverOptions& o) {
     if (o.rays && *o.rays == 0) throw UsageError("--rays: found 0, at least 1 is needed");

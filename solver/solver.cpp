@@ -2,6 +2,7 @@
 
 #include "core/checksum.h"
 #include "core/error.h"
+#include "core/named.h"
 #include "solver/conjugate_gradient.h"
 #include "solver/gauss_seidel.h"
 #include "solver/jacobi.h"
@@ -9,40 +10,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 namespace lambert {
 
 namespace {
 
-struct SolverTraits {
-    SolverMethod method;
-    std::string_view name;
-};
-
-constexpr std::array kSolvers{SolverTraits{SolverMethod::Jacobi, "jacobi"},
-                              SolverTraits{SolverMethod::GaussSeidel, "gauss-seidel"},
-                              SolverTraits{SolverMethod::Southwell, "southwell"},
-                              SolverTraits{SolverMethod::ConjugateGradient, "conjugate-gradient"}};
+constexpr std::array kSolvers{Named{SolverMethod::Jacobi, "jacobi"}, Named{SolverMethod::GaussSeidel, "gauss-seidel"},
+                              Named{SolverMethod::Southwell, "southwell"},
+                              Named{SolverMethod::ConjugateGradient, "conjugate-gradient"}};
 
 } // namespace
 
-std::optional<SolverMethod> solverByName(std::string_view name) {
-    for (const SolverTraits& traits : kSolvers)
-        if (traits.name == name) return traits.method;
-    return std::nullopt;
-}
-
-std::string_view nameOf(SolverMethod method) {
-    return std::find_if(kSolvers.begin(), kSolvers.end(), [&](const auto& t) { return t.method == method; })->name;
-}
-
-std::vector<std::string> solverNames() {
-    std::vector<std::string> names;
-    for (const SolverTraits& traits : kSolvers) names.emplace_back(traits.name);
-    return names;
-}
+std::optional<SolverMethod> solverByName(std::string_view name) { return valueNamed(kSolvers, name); }
+std::string_view nameOf(SolverMethod method) { return rowOf(kSolvers, method).name; }
+std::vector<std::string> solverNames() { return namesIn(kSolvers); }
 
 void checkSolver(const SolverOptions& o, bool warmStart) {
     const auto refuse = [&](const char* option) {

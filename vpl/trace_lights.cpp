@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/low_discrepancy.h"
+#include "core/named.h"
 #include "core/orthonormal_basis.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -25,9 +26,8 @@ namespace lambert {
 
 namespace {
 
-constexpr std::array kWalks{std::pair<std::string_view, Walk>{"quasi", Walk::Quasi},
-                            std::pair<std::string_view, Walk>{"roulette", Walk::Roulette},
-                            std::pair<std::string_view, Walk>{"fixed", Walk::Fixed}};
+constexpr std::array kWalks{Named{Walk::Quasi, "quasi"}, Named{Walk::Roulette, "roulette"},
+                            Named{Walk::Fixed, "fixed"}};
 constexpr std::uint32_t kMostParticles = 1U << 24;
 constexpr std::uint32_t kMostBounces = kPrimes / 2 - 2; ///< every hit takes two primes
 constexpr float kRounding = 1e-6F;                      ///< of sums of reflectances
@@ -300,17 +300,8 @@ std::span<const VirtualPointLight> VirtualPointLights::ofBounces(std::uint32_t f
     return {begin, end};
 }
 
-std::optional<Walk> walkByName(std::string_view name) {
-    for (const auto& [walkName, walk] : kWalks)
-        if (walkName == name) return walk;
-    return std::nullopt;
-}
-
-std::string_view nameOf(Walk walk) {
-    for (const auto& [name, value] : kWalks)
-        if (value == walk) return name;
-    return ""; // not reached
-}
+std::optional<Walk> walkByName(std::string_view name) { return valueNamed(kWalks, name); }
+std::string_view nameOf(Walk walk) { return rowOf(kWalks, walk).name; }
 
 void checkTrace(const TraceOptions& options) {
     if (options.particles < 1 || options.particles > kMostParticles)
