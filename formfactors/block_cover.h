@@ -35,11 +35,6 @@ public:
     void hits(std::uint32_t polygon, int column, int row, RayPacket& packet) const;
 
 private:
-    /// Of a direction 1, u, v in the frame of a face.
-    struct LinearForm {
-        double at0, perU, perV;
-        double at(double u, double v) const { return at0 + perU * u + perV * v; }
-    };
     using Corners = std::array<glm::dvec3, 4>;
 
     /// What is known of a row of blocks, as parallel arrays. Depths are 1/t: larger is nearer.

@@ -280,10 +280,9 @@ Blocking BlockVisibility::between(std::uint32_t a, std::uint32_t b) const {
 
 Blocking BlockVisibility::between(const ConvexPolygon& patch, const Plane& plane, std::uint32_t a,
                                   std::uint32_t b) const {
+    if (const Blocking known = between(a, b); known != Blocking::Unknown) return known;
     const Row& row = rows_[std::min(a, b)];
     const std::size_t at = std::max(a, b) - std::min(a, b);
-    if (row.count[at] == 0) return Blocking::Clear;
-    if (row.count[at] == kHidden) return Blocking::Hidden;
     const Hull& hull = hulls_[b];
     if (row.count[at] == kMany || hull.polygon.empty()) return Blocking::Unknown;
     bool clear = true;

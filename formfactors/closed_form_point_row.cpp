@@ -109,16 +109,9 @@ private:
     /// Each polygon cut across, through its centre.
     static std::vector<ConvexPolygon> halved(const std::vector<ConvexPolygon>& polygons) {
         std::vector<ConvexPolygon> halves;
-        for (const ConvexPolygon& polygon : polygons) {
-            const glm::dvec3 centre = polygon.centre();
-            glm::dvec3 longest(0.0);
-            for (const glm::dvec3& p : polygon.points())
-                if (glm::dot(p - centre, p - centre) > glm::dot(longest, longest)) longest = p - centre;
-            ConvexPolygon front, behind;
-            split(polygon, Plane::through(centre, longest), 0.0, front, behind);
-            for (const ConvexPolygon& half : {front, behind})
+        for (const ConvexPolygon& polygon : polygons)
+            for (const ConvexPolygon& half : halvesOf(polygon))
                 if (!half.empty()) halves.push_back(half);
-        }
         return halves;
     }
 

@@ -1,6 +1,7 @@
 #include "formfactors/convex_polygon.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambert {
 
@@ -18,6 +19,12 @@ glm::dvec3 ConvexPolygon::centre() const {
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& p : points()) sum += p;
     return sum / static_cast<double>(size);
+}
+
+double ConvexPolygon::radiusAround(const glm::dvec3& point) const {
+    double squared = 0.0;
+    for (const glm::dvec3& p : points()) squared = std::max(squared, glm::dot(p - point, p - point));
+    return std::sqrt(squared);
 }
 
 std::array<double, 2> cornerHeights(const Plane& plane, std::span<const glm::dvec3> points) {
@@ -64,6 +71,16 @@ void split(const ConvexPolygon& polygon, const Plane& plane, double tolerance, C
             behind.add(at);
         }
     }
+}
+
+std::array<ConvexPolygon, 2> halvesOf(const ConvexPolygon& polygon) {
+    const glm::dvec3 centre = polygon.centre();
+    glm::dvec3 longest(0.0);
+    for (const glm::dvec3& p : polygon.points())
+        if (glm::dot(p - centre, p - centre) > glm::dot(longest, longest)) longest = p - centre;
+    std::array<ConvexPolygon, 2> halves;
+    split(polygon, Plane::through(centre, longest), 0.0, halves[0], halves[1]);
+    return halves;
 }
 
 } // namespace lambert

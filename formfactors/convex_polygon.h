@@ -42,7 +42,8 @@ struct ConvexPolygon {
     bool empty() const { return size < 3; }
     const glm::dvec3& next(std::size_t k) const { return corners[k + 1 < size ? k + 1 : 0]; }
     std::span<const glm::dvec3> points() const { return {corners.data(), size}; }
-    glm::dvec3 centre() const; ///< mean of the corners
+    glm::dvec3 centre() const;                          ///< mean of the corners
+    double radiusAround(const glm::dvec3& point) const; ///< to the farthest corner
 };
 
 /// Lowest and highest point over a plane; at least one point.
@@ -54,5 +55,8 @@ ConvexPolygon reversed(const ConvexPolygon& polygon);
 /// Cuts a polygon by a plane. Either part may be empty. Corners within `tolerance` of the plane count as in it.
 void split(const ConvexPolygon& polygon, const Plane& plane, double tolerance, ConvexPolygon& front,
            ConvexPolygon& behind);
+
+/// Cuts a polygon across, through its centre.
+std::array<ConvexPolygon, 2> halvesOf(const ConvexPolygon& polygon);
 
 } // namespace lambert

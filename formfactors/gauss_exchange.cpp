@@ -47,12 +47,6 @@ void sumLanes(std::span<const WeightedPoint> from, const glm::dvec3& normal, con
     for (std::size_t lane = 0; lane < kLanes; ++lane) result[lane] = sum[lane] * (1.0 / std::numbers::pi);
 }
 
-double radius(const ConvexPolygon& polygon, const glm::dvec3& centre) {
-    double squared = 0.0;
-    for (const glm::dvec3& p : polygon.points()) squared = std::max(squared, glm::dot(p - centre, p - centre));
-    return std::sqrt(squared);
-}
-
 } // namespace
 
 int gaussOrder(double ratio, bool upright) {
@@ -72,7 +66,7 @@ std::array<double, kLanes> exchangeWithCluster(std::span<const WeightedPoint> fr
 double convexExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
                       ExchangeScratch& scratch, Care care) {
     const glm::dvec3 centreFrom = from.centre(), centreTo = to.centre();
-    const double reach = radius(from, centreFrom) + radius(to, centreTo);
+    const double reach = from.radiusAround(centreFrom) + to.radiusAround(centreTo);
     const int order = gaussOrder(reach / glm::distance(centreFrom, centreTo));
     if (order == 0) return exchangeArea(from.points(), to.points(), care);
     scratch.from.clear();

@@ -15,12 +15,6 @@ namespace {
 constexpr double kAgreement = 1e-3;   ///< of two rules, so that the finer one is taken to be right to a part of it
 constexpr double kSmallFactor = 1e-6; ///< rules are right enough
 
-double radiusOf(const ConvexPolygon& polygon, const glm::dvec3& centre) {
-    double squared = 0.0;
-    for (const glm::dvec3& p : polygon.points()) squared = std::max(squared, glm::dot(p - centre, p - centre));
-    return std::sqrt(squared);
-}
-
 /// ∫ of what points of one polygon see of the other, in m², by a rule of this order.
 double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, const ConvexPolygon& inner, int order,
                       std::vector<WeightedPoint>& points) {
@@ -36,7 +30,7 @@ double meanOverPoints(const ConvexPolygon& outer, const glm::dvec3& normal, cons
 double nearExchange(const ConvexPolygon& from, const Plane& fromPlane, const ConvexPolygon& to, const Plane& toPlane,
                     ExchangeScratch& scratch) {
     const glm::dvec3 fromCentre = from.centre(), toCentre = to.centre();
-    const double fromRadius = radiusOf(from, fromCentre), toRadius = radiusOf(to, toCentre);
+    const double fromRadius = from.radiusAround(fromCentre), toRadius = to.radiusAround(toCentre);
     const bool fromIsSmaller = fromRadius < toRadius;
     const double smaller = fromIsSmaller ? fromRadius : toRadius;
     const ConvexPolygon& outer = fromIsSmaller ? from : to;

@@ -16,7 +16,7 @@ Target makeTarget(std::span<const glm::dvec3> corners, const glm::dvec3& normal)
     target.polygon = ConvexPolygon(corners);
     target.centre = target.polygon.centre();
     target.plane = Plane::through(target.centre, normal);
-    for (const glm::dvec3& p : corners) target.radius = std::max(target.radius, glm::distance(p, target.centre));
+    target.radius = target.polygon.radiusAround(target.centre);
     return target;
 }
 

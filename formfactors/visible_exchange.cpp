@@ -234,16 +234,11 @@ private:
     double refined(const Cell& cell, double low, int halvings) const {
         const double high = byRule(cell, 3);
         if (std::abs(high - low) <= error_ || halvings == 0) return high;
-        const glm::dvec3 centre = cell.polygon.centre();
-        glm::dvec3 longest(0.0);
-        for (const glm::dvec3& p : cell.polygon.points())
-            if (glm::dot(p - centre, p - centre) > glm::dot(longest, longest)) longest = p - centre;
-        Cell front{{}, cell.occluders}, behind{{}, cell.occluders};
-        split(cell.polygon, Plane::through(centre, longest), 0.0, front.polygon, behind.polygon);
         double sum = 0.0;
-        for (Cell* half : {&front, &behind}) {
-            if (half->polygon.empty() || !keepBlocking(*half)) continue;
-            sum += half->occluders.empty() ? free(*half) : refined(*half, byRule(*half, 2), halvings - 1);
+        for (const ConvexPolygon& polygon : halvesOf(cell.polygon)) {
+            Cell half{polygon, cell.occluders};
+            if (polygon.empty() || !keepBlocking(half)) continue;
+            sum += half.occluders.empty() ? free(half) : refined(half, byRule(half, 2), halvings - 1);
         }
         return sum;
     }
