@@ -56,8 +56,6 @@ std::optional<SurfacePoint> nearestFront(const SolvedScene& scene, const glm::ve
     return best;
 }
 
-double sum(const RgbSum& v) { return v.x + v.y + v.z; }
-
 /// The whole light, in parts that can be had at a point, and the rest.
 class Probe {
 public:
@@ -129,8 +127,8 @@ public:
             const RgbSum variance = glm::max(squares / n - mean * mean, RgbSum(0.0)) / (n - 1.0);
             reading.standardError = glm::sqrt(reading.standardError * reading.standardError + variance);
         }
-        const double light = sum(reading.irradiance);
-        return light > 0.0 && sum(reading.standardError) >= kLeaked * light ? unknown(false) : reading;
+        const double light = sumOf(reading.irradiance);
+        return light > 0.0 && sumOf(reading.standardError) >= kLeaked * light ? unknown(false) : reading;
     }
 
 private:

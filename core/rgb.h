@@ -10,4 +10,7 @@ using Rgb = glm::vec3;
 /// Sums over patches and time, in double.
 using RgbSum = glm::dvec3;
 
+/// Over the channels.
+inline double sumOf(const RgbSum& c) { return c.x + c.y + c.z; }
+
 } // namespace lambert

@@ -20,8 +20,6 @@ constexpr int kSamples = 256;   ///< hemicubes that look which backs are met
 constexpr int kResolution = 16; ///< of these
 constexpr int kPlaces = 4;      ///< of these on a patch: some may lie under what stands on it
 
-double sumOf(const RgbSum& c) { return c.x + c.y + c.z; }
-
 bool emits(const PatchOptics& optics, std::size_t patch) {
     return sumOf(RgbSum(optics.emittedRadiosity[patch])) > 0.0;
 }

@@ -12,8 +12,6 @@ namespace lambert {
 
 namespace {
 
-double sumOf(const RgbSum& c) { return c.x + c.y + c.z; }
-
 double lightThatCameIn(const EnergyBalance& energy) { return sumOf(energy.emitted + energy.received); }
 
 /// What is lost of the light of each material.

@@ -24,8 +24,6 @@ constexpr double kStrayShare = 1e-7;      ///< of all rays toward a source
 constexpr std::uint32_t kFewestRays = 64; ///< of a patch: among fewer, one that gets through may well be light
 constexpr double kStrayPower = 1e-6;      ///< of what is emitted
 
-double sumOf(const RgbSum& value) { return value.x + value.y + value.z; }
-
 /// What falls on an unshaded point of a patch from a light without area.
 RgbSum unshaded(const PatchMesh& mesh, std::size_t patch, const PunctualLight& light) {
     const glm::dvec3 normal(mesh.normal[patch]);

@@ -121,8 +121,7 @@ public:
         const RgbSum length = ratio(dot(residual_, next.product), next.square);
         add(z, length, next.p);
         add(residual_, -length, next.product);
-        const RgbSum squares = dot(residual_, residual_);
-        const double sum = squares.x + squares.y + squares.z;
+        const double sum = sumOf(dot(residual_, residual_));
         falls_ = sum < squares_;
         squares_ = sum;
         directions_[oldest_] = std::move(next);

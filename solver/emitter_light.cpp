@@ -26,8 +26,6 @@ constexpr int kPointBatches = 8;
 constexpr double kPatchError = 3e-3; ///< relative, of a patch's mean: no more batches
 constexpr double kEven = 0.1;        ///< relative: points of a patch that vary less, and all see the same, are enough
 
-double sum(const RgbSum& v) { return v.x + v.y + v.z; }
-
 std::uint64_t keyOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
     return randomKey({index, 0, 0, kind}, seed);
 }
@@ -85,9 +83,9 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
         double squares = 0.0;
         std::vector<RgbSum> batch(groups);
         const auto enough = [&] {
-            const double mean = sum(batches.mean());
+            const double mean = sumOf(batches.mean());
             if (batches.count() == mostBatches) return true;
-            if (batches.count() > 1) return sum(batches.carefulError()) <= kPatchError * mean;
+            if (batches.count() > 1) return sumOf(batches.carefulError()) <= kPatchError * mean;
             const double variance = squares / kPatchPoints - mean * mean;
             return !receiver.seesParts() && variance <= kEven * kEven * mean * mean;
         };
@@ -99,7 +97,7 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
                 receiver.gather(surface.at({samples.at(k, 0), samples.at(k, 1)}), kPatchRays, 1.0, batch);
                 RgbSum now(0.0);
                 for (const RgbSum& e : batch) now += e;
-                squares += sum(now - before) * sum(now - before);
+                squares += sumOf(now - before) * sumOf(now - before);
                 before = now;
             }
             for (std::size_t g = 0; g < groups; ++g) sums[g] += batch[g];

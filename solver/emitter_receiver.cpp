@@ -19,8 +19,6 @@ namespace {
 constexpr double kPointRatio = 0.03;
 constexpr double kAreaRatio = 0.2;
 
-double sum(const RgbSum& v) { return v.x + v.y + v.z; }
-
 glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& corners, const glm::dvec2& u) {
     const glm::dvec3 w = uniformTriangle(u);
     return w.x * corners[0] + w.y * corners[1] + w.z * corners[2];
@@ -109,11 +107,11 @@ void EmitterReceiver::addPoint(const EmitterNode& node, std::uint32_t index, std
     const double scale = -glm::dot(way, plane_.normal) / (std::numbers::pi * squared * squared);
     const RgbSum e =
         scale * RgbSum(glm::dot(node.flux[0], way), glm::dot(node.flux[1], way), glm::dot(node.flux[2], way));
-    if (!(sum(e) > 0.0)) return;
+    if (!(sumOf(e) > 0.0)) return;
     const bool single = triangle != kNone;
     const std::uint32_t group = single ? tree_.triangles()[triangle].group : tree_.groupOf(index);
     Source& source = scratch().sources.emplace_back();
-    source.value = sum(e);
+    source.value = sumOf(e);
     source.irradiance = e;
     source.node = index;
     source.triangle = triangle;
@@ -143,7 +141,7 @@ void EmitterReceiver::addVisible(std::uint32_t index, const EmitterTriangle& t,
     const double factor = weight * pointToVisiblePolygon(point_, plane_.normal, corners);
     if (!(factor > 0.0)) return;
     const RgbSum e = factor * t.radiosity;
-    scratch().sources.push_back({sum(e), e, kNone, index, t.group, corners});
+    scratch().sources.push_back({sumOf(e), e, kNone, index, t.group, corners});
 }
 
 /// Sources of a ray's share or more get rays of their own; all others together those that are left, in proportion.

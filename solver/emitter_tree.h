@@ -22,7 +22,7 @@ struct EmitterTriangle {
     double lift;                       //!< rays end so far above it, metres
     std::uint32_t group;               //!< see EmitterTree::groups
 
-    double power() const { return area * (radiosity.x + radiosity.y + radiosity.z); }
+    double power() const { return area * sumOf(radiosity); }
     glm::dvec3 centroid() const { return (corners[0] + corners[1] + corners[2]) / 3.0; }
     /// Of the circle about the centroid that holds it.
     double radius() const;

@@ -28,10 +28,8 @@ void settle(const SolverProblem& problem, FormFactorRows& rows, RadiositySolutio
 }
 
 double EnergyBalance::imbalance() const {
-    const RgbSum in = emitted + received;
-    const RgbSum lost = absorbed + backFaces + escaped;
-    const double total = in.x + in.y + in.z;
-    return total > 0.0 ? (total - (lost.x + lost.y + lost.z)) / total : 0.0;
+    const double in = sumOf(emitted + received);
+    return in > 0.0 ? (in - sumOf(absorbed + backFaces + escaped)) / in : 0.0;
 }
 
 } // namespace lambert

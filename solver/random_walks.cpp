@@ -50,10 +50,8 @@ public:
           counts_(problem.size()),
           sender_(problem.size()),
           light_(problem.size(), Rgb(0.0F)) {
-        sourcePower_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) {
-            const RgbSum s = problem.source(i);
-            return problem.area(i) * (s.x + s.y + s.z);
-        });
+        sourcePower_ = orderedSum(problem.size(), 0.0,
+                                  [&](std::size_t i) { return problem.area(i) * sumOf(problem.source(i)); });
     }
 
     std::span<const Rgb> irradiance() const { return light_; }
@@ -109,8 +107,7 @@ void WalkRun::run(std::uint64_t walks, std::uint64_t seed, Progress& progress,
     const auto count = static_cast<double>(walks);
     forPatches(mesh_.size(), [&](std::size_t i) {
         const Rgb s(problem_.source(i));
-        const double sum = static_cast<double>(s.x) + static_cast<double>(s.y) + static_cast<double>(s.z);
-        const auto density = static_cast<float>(count * sum / sourcePower_);
+        const auto density = static_cast<float>(count * sumOf(RgbSum(s)) / sourcePower_);
         sender_[i] = {density > 0.0F ? s / density : Rgb(0.0F), density};
     });
     setScales(count);

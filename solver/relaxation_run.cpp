@@ -34,8 +34,7 @@ std::uint64_t sequenceSeed(std::uint64_t seed, std::uint32_t stage, std::int32_t
 
 constexpr std::uint32_t kShooting = 0, kRegular = 1, kGlobal = 2; ///< stages
 
-double sum(const RgbSum& colour) { return colour.x + colour.y + colour.z; }
-double sumOfMagnitudes(const Rgb& colour) { return sum(RgbSum(glm::abs(colour))); }
+double sumOfMagnitudes(const Rgb& colour) { return sumOf(RgbSum(glm::abs(colour))); }
 
 } // namespace
 
@@ -55,7 +54,7 @@ RelaxationRun::RelaxationRun(const SolverProblem& problem, const PatchMesh& mesh
     }
     area_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return area(i); });
     rootArea_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return std::sqrt(area(i)); });
-    sourcePower_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(source(i))); });
+    sourcePower_ = orderedSum(problem.size(), 0.0, [&](std::size_t i) { return area(i) * sumOf(RgbSum(source(i))); });
 }
 
 void RelaxationRun::begin() {
@@ -112,7 +111,7 @@ void RelaxationRun::shoot(double rays, std::uint64_t seed, Progress& progress,
         const double power = stage_.power;
         const double lines = perPower * power; // the mean of the whole number that is drawn
         forPatches(mesh_.size(), [&](std::size_t i) {
-            sender_[i].density = static_cast<float>(lines * sum(RgbSum(sender_[i].excess)) / power);
+            sender_[i].density = static_cast<float>(lines * sumOf(RgbSum(sender_[i].excess)) / power);
         });
         local_.restart();
         input_.seed = sequenceSeed(seed, kShooting, stage_.bounces);
@@ -121,7 +120,7 @@ void RelaxationRun::shoot(double rays, std::uint64_t seed, Progress& progress,
             const Rgb received(received_.take(i) / area(i));
             light_[i] += received;
             sender_[i].excess = rho(i) * received;
-            return area(i) * sum(RgbSum(sender_[i].excess));
+            return area(i) * sumOf(RgbSum(sender_[i].excess));
         });
         stage_.shotRays = rays_;
         ++stage_.bounces;
@@ -189,11 +188,11 @@ RelaxationRun::Division RelaxationRun::divide() const {
     };
     const std::size_t count = mesh_.size();
     const double most =
-        orderedSum(count, Maximum{}, [&](std::size_t i) { return Maximum{sum(RgbSum(radiosity(i)))}; }).value;
+        orderedSum(count, Maximum{}, [&](std::size_t i) { return Maximum{sumOf(RgbSum(radiosity(i)))}; }).value;
     std::array<double, kCaps> caps{};
     for (std::size_t k = 0; k < kCaps; ++k) caps[k] = most * std::pow(0.5, 0.5 * static_cast<double>(k));
     const Sums sums = orderedSum(count, Sums{}, [&](std::size_t i) {
-        const double b = sum(RgbSum(radiosity(i)));
+        const double b = sumOf(RgbSum(radiosity(i)));
         Sums term;
         for (std::size_t k = 0; k < kCaps; ++k) {
             const double capped = std::min(b, caps[k]);
@@ -222,7 +221,7 @@ void RelaxationRun::gatherGlobally(double lines, Progress& progress) {
     const Division division = divide();
     const auto below = [&](std::size_t i) { // what of B goes by global lines
         const Rgb b = radiosity(i);
-        const double all = sum(RgbSum(b));
+        const double all = sumOf(RgbSum(b));
         return all > division.cap ? static_cast<float>(division.cap / all) * b : b;
     };
     const Rgb control = options_.controlVariate ? median(below) : Rgb(0.0F);
@@ -258,8 +257,8 @@ template <typename Value>
 Rgb RelaxationRun::median(Value&& value) const {
     const std::size_t count = mesh_.size();
     const std::size_t step = (count + kMedianSample - 1) / kMedianSample;
-    const double all = orderedSum(count, 0.0, [&](std::size_t i) { return area(i) * sum(RgbSum(radiosity(i))); });
-    const double lost = std::clamp((sum(losses_.backFaces) + sum(losses_.escaped)) / all, 0.0, 0.999);
+    const double all = orderedSum(count, 0.0, [&](std::size_t i) { return area(i) * sumOf(RgbSum(radiosity(i))); });
+    const double lost = std::clamp((sumOf(losses_.backFaces) + sumOf(losses_.escaped)) / all, 0.0, 0.999);
     Rgb result(0.0F);
     std::vector<std::pair<float, double>> values;
     for (int c = 0; c < 3; ++c) {

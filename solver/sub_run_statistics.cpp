@@ -50,7 +50,7 @@ void SubRunStatistics::add(std::span<const Rgb> irradiance, const Losses& losses
         const RgbSum square = weight * before * (RgbSum(irradiance[i]) - mean);
         mean_[i] = Rgb(mean);
         squares_[i] += Rgb(square);
-        return problem_.area(i) * glm::dvec2(square.x + square.y + square.z, glm::dot(mean, mean));
+        return problem_.area(i) * glm::dvec2(sumOf(square), glm::dot(mean, mean));
     });
     deviations_.push_back(deviations_.empty() ? 0.0 : sums.x);
     meanSquare_ = sums.y;

@@ -20,8 +20,6 @@ namespace lambert {
 
 namespace {
 
-double sumOf(const glm::dvec3& flux) { return flux.x + flux.y + flux.z; }
-
 /// The scene's bounding sphere.
 struct BoundingSphere {
     glm::dvec3 centre;

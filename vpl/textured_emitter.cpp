@@ -58,7 +58,7 @@ TexturedEmitter::TexturedEmitter(const Scene& scene, const Polygon& polygon, con
                 add(0.5 * shareOfCell(1), {cell[2], cell[3], cell[1]});
             }
             mean_ += emitted;
-            importance.push_back(emitted.x + emitted.y + emitted.z);
+            importance.push_back(sumOf(emitted));
         }
     }
     const double largest = *std::max_element(importance.begin(), importance.end());

@@ -33,8 +33,6 @@ constexpr std::uint32_t kMostBounces = kPrimes / 2 - 2; ///< every hit takes two
 constexpr float kRounding = 1e-6F;                      ///< of sums of reflectances
 constexpr std::uint32_t kTextureSamples = 16;           ///< per polygon, for its mean reflectance
 
-double sumOf(const Rgb& flux) { return static_cast<double>(flux.x) + flux.y + flux.z; }
-
 /// Of both its parts.
 glm::dvec3 fluxOf(const VirtualPointLight& light) { return glm::dvec3(light.flux) + glm::dvec3(light.lobe.flux); }
 
@@ -198,7 +196,7 @@ private:
     static void send(Particle& particle, const SurfacePoint& from, const LightLobe& lobe, glm::dvec2 u) {
         bool byLobe = false;
         if (lobe) {
-            const double probability = sumOf(lobe.flux) / sumOf(particle.weight);
+            const double probability = sumOf(RgbSum(lobe.flux)) / sumOf(RgbSum(particle.weight));
             byLobe = u.x < probability;
             const double chosen = byLobe ? probability : 1.0 - probability;
             u.x = std::min((byLobe ? u.x : u.x - probability) / chosen, 1.0);
@@ -284,7 +282,7 @@ double meanReflectance(const Scene& scene, std::span<const PhongLobe> gloss) {
             if (!side) continue;
             glm::dvec3 reflectance(meanReflectanceOf(scene, polygon, side));
             if (!gloss.empty()) reflectance += glm::dvec3(gloss[side.material].reflectance);
-            reflecting += polygonSize * (reflectance.x + reflectance.y + reflectance.z) / 3.0;
+            reflecting += polygonSize * sumOf(reflectance) / 3.0;
             area += polygonSize;
         }
     }
