@@ -32,7 +32,7 @@ struct HeatFlow {
     std::vector<double> kelvin;   //!< #groups: as given; of an adiabatic one that of its mean J
     double environmentFlow = 0.0; //!< W, what the environment gives off less what it receives
     double backFlow = 0.0;        //!< W, the same of black backs and of patches without group; they give off nothing
-    int iterations = 0;
+    std::int64_t iterations = 0;
     double residual = 0.0;
 
     /// Σ of all flows, W; 0 for exact form factors.
@@ -43,10 +43,9 @@ struct HeatFlow {
 ///
 ///     J = ε σ T⁴ + (1 − ε) G,   G = F J + F_out σ T_env⁴
 ///
-/// solved for J by BiCGSTAB (H. A. van der Vorst, SIAM J. Sci. Stat. Comput. 13(2), 1992), which high reflectances do not
-/// slow down as they do a Jacobi iteration. `area` (m²) and `group` (into `surfaces`, or kNoGroup: black, gives off
-/// nothing, counted with the backs): #patches. Throws InputError if
-/// nothing has a temperature, Cancelled. A residual above the tolerance is not an error.
+/// solved for J as light is, by solveConjugateGradient. `area` (m²) and `group` (into `surfaces`, or kNoGroup: black, gives off
+/// nothing, counted with the backs): #patches. Throws InputError if nothing has a temperature, Cancelled. A residual above the
+/// tolerance is not an error.
 HeatFlow solveHeatFlow(const FormFactorMatrix& matrix, std::span<const float> area,
                        std::span<const std::uint32_t> group, std::span<const ThermalSurface> surfaces,
                        const HeatFlowOptions& options, Progress& progress);

@@ -24,7 +24,7 @@ SolverProblem::SolverProblem(const PatchViews& patches, std::vector<RgbSum> dire
         const RgbSum b = source(i);
         squares += area(i) * glm::dot(b, b);
         const RgbSum e = direct(i);
-        lit = lit || area(i) * glm::dot(e, e) > 0.0 || patches.emittedRadiosity[i] != Rgb(0.0F);
+        lit = lit || area(i) * glm::dot(e, e) > 0.0 || allEmitted(i) != RgbSum(0.0);
     }
     if (!(squares > 0.0) && !lit)
         throw InputError("the scene has no light: no material emits, and no light without area reaches a "

@@ -14,10 +14,14 @@ struct PatchViews {
     std::span<const float> area;           //!< m²
     std::span<const Rgb> reflectance;      //!< ρ, 0 to 0.99
     std::span<const Rgb> emittedRadiosity; //!< B_e, per m²
+    // Instead of both where single precision is too little, as of polished metal: one channel, ρ from 0 to 1.
+    std::span<const double> greyReflectance{}, greyEmitted{};
 
     PatchViews(std::span<const float> patchArea, const PatchOptics& optics)
         : area(patchArea), reflectance(optics.reflectance), emittedRadiosity(optics.emittedRadiosity) {}
     PatchViews(const PatchMesh& mesh, const PatchOptics& optics) : PatchViews(std::span(mesh.area), optics) {}
+    PatchViews(std::span<const float> patchArea, std::span<const double> reflected, std::span<const double> emitted)
+        : area(patchArea), greyReflectance(reflected), greyEmitted(emitted) {}
 };
 
 /// What is to be solved, but for the form factors, for every patch i and channel:
@@ -37,8 +41,10 @@ public:
     std::size_t size() const { return patches_.area.size(); } //!< #patches
     const PatchViews& patches() const { return patches_; }
 
-    double area(std::size_t i) const { return static_cast<double>(patches_.area[i]); }  //!< A, m²
-    RgbSum reflectance(std::size_t i) const { return RgbSum(patches_.reflectance[i]); } //!< ρ
+    double area(std::size_t i) const { return static_cast<double>(patches_.area[i]); } //!< A, m²
+    RgbSum reflectance(std::size_t i) const {                                          //!< ρ
+        return isGrey() ? RgbSum(patches_.greyReflectance[i]) : RgbSum(patches_.reflectance[i]);
+    }
     /// B_e, as far as form factors carry it.
     RgbSum emitted(std::size_t i) const { return emittersApart_ ? RgbSum(0.0) : allEmitted(i); }
     RgbSum direct(std::size_t i) const { return direct_.empty() ? RgbSum(0.0) : direct_[i]; }          //!< E_0
@@ -46,7 +52,9 @@ public:
     RgbSum radiosity(std::size_t i, const RgbSum& e) const { return emitted(i) + reflectance(i) * e; } //!< B_e + ρ E
 
     /// B_e, whatever carries it.
-    RgbSum allEmitted(std::size_t i) const { return RgbSum(patches_.emittedRadiosity[i]); }
+    RgbSum allEmitted(std::size_t i) const {
+        return isGrey() ? RgbSum(patches_.greyEmitted[i]) : RgbSum(patches_.emittedRadiosity[i]);
+    }
     /// Σ A E_0 of lights without area alone.
     const RgbSum& received() const { return received_; }
     bool emittersApart() const { return emittersApart_; } //!< E_0 holds their light
@@ -60,11 +68,12 @@ public:
     /// The same from the sum of squares.
     double relativeNorm(double sumOfSquares) const;
 
-    /// A check sum of all of this.
+    /// A check sum of all of this, unless it is grey.
     std::uint64_t checksum() const;
 
 private:
     double sumOfSquares(std::span<const RgbSum> values) const;
+    bool isGrey() const { return !patches_.greyReflectance.empty(); }
 
     PatchViews patches_;
     std::vector<RgbSum> direct_;
