@@ -24,6 +24,8 @@ inline constexpr std::size_t kMostDenseNumPy = 20'000;
 
 /// By the name's extension (any case); nothing for any other.
 std::optional<MatrixFormat> matrixFormatOf(const std::filesystem::path& path);
+/// Throws UsageError for any other.
+MatrixFormat requireMatrixFormat(const std::filesystem::path& path);
 
 /// A matrix with what solving it needs.
 struct PatchMatrix {

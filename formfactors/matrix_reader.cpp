@@ -332,13 +332,9 @@ void readAreas(const fs::path& path, PatchMatrix& patches) {
 } // namespace
 
 PatchMatrix readMatrix(const fs::path& path, MatrixStorage storage) {
-    const auto format = matrixFormatOf(path);
-    if (!format)
-        throw UsageError(fmt::format("{}: found the extension \"{}\", allowed are .mtx, .npy, .csv and .txt (View3D)",
-                                     path.string(), path.extension().string()));
     std::error_code error;
     PatchMatrix result;
-    switch (*format) {
+    switch (requireMatrixFormat(path)) {
     case MatrixFormat::MatrixMarket:
         result.matrix = readMatrixMarket(path, storage);
         break;

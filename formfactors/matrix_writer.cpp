@@ -178,10 +178,16 @@ void writeAreas(BlockWriter& out, const PatchMatrix& patches) {
 
 fs::path appended(const fs::path& path, const char* end) { return fs::path(path.string() + end); }
 
-MatrixFormat requireFormat(const fs::path& path) {
-    if (const auto format = matrixFormatOf(path)) return *format;
-    throw UsageError(fmt::format("{}: found the extension \"{}\", allowed are .mtx, .npy, .csv and .txt (View3D)",
-                                 path.string(), path.extension().string()));
+/// In a format of one file that holds nothing else.
+FileStream rowsFile(const fs::path& path, MatrixFormat format, const Rows& rows, const std::string& comment) {
+    return fileOf(path, [format, &rows, &comment](BlockWriter& out) {
+        if (format == MatrixFormat::MatrixMarket)
+            writeMatrixMarket(out, rows, comment);
+        else if (format == MatrixFormat::Csv)
+            writeCsv(out, rows, comment);
+        else
+            writeDenseNumPy(out, rows);
+    });
 }
 
 } // namespace
@@ -197,6 +203,12 @@ std::optional<MatrixFormat> matrixFormatOf(const fs::path& path) {
     return std::nullopt;
 }
 
+MatrixFormat requireMatrixFormat(const fs::path& path) {
+    if (const auto format = matrixFormatOf(path)) return *format;
+    throw UsageError(fmt::format("{}: found the extension \"{}\", allowed are .mtx, .npy, .csv and .txt (View3D)",
+                                 path.string(), path.extension().string()));
+}
+
 std::vector<fs::path> matrixFiles(const fs::path& path, std::size_t patches) {
     const auto format = matrixFormatOf(path);
     std::vector<fs::path> files{path};
@@ -209,7 +221,7 @@ std::vector<fs::path> matrixFiles(const fs::path& path, std::size_t patches) {
 }
 
 void checkMatrixFile(const fs::path& path, std::size_t patches) {
-    if (requireFormat(path) == MatrixFormat::Csv && patches > kMostDenseCsv)
+    if (requireMatrixFormat(path) == MatrixFormat::Csv && patches > kMostDenseCsv)
         throw UsageError(fmt::format("{}: a dense CSV of {} patches is too large, allowed are {}; use .mtx or .npy",
                                      path.string(), patches, kMostDenseCsv));
 }
@@ -218,24 +230,14 @@ void writeMatrix(const fs::path& path, const PatchMatrix& patches, const std::st
     checkMatrixFile(path, patches.matrix.size());
     const std::vector<fs::path> files = matrixFiles(path, patches.matrix.size());
     const Rows rows{patches.matrix, patches.matrix.size(), progress};
+    const MatrixFormat format = requireMatrixFormat(path);
     std::vector<FileStream> streams;
-    switch (requireFormat(path)) {
-    case MatrixFormat::MatrixMarket:
-        streams = {fileOf(path, [&](BlockWriter& out) { writeMatrixMarket(out, rows, comment); })};
-        break;
-    case MatrixFormat::Csv:
-        streams = {fileOf(path, [&](BlockWriter& out) { writeCsv(out, rows, comment); })};
-        break;
-    case MatrixFormat::View3D:
+    if (format == MatrixFormat::View3D)
         streams = {fileOf(path, [&](BlockWriter& out) { writeView3D(out, patches, rows); })};
-        break;
-    case MatrixFormat::NumPy:
-        if (files.front() == path)
-            streams = {fileOf(path, [&](BlockWriter& out) { writeDenseNumPy(out, rows); })};
-        else
-            streams = sparseNumPy(files, rows);
-        break;
-    }
+    else if (format == MatrixFormat::NumPy && files.front() != path)
+        streams = sparseNumPy(files, rows);
+    else
+        streams = {rowsFile(path, format, rows, comment)};
     streams.push_back(fileOf(files.back(), [&](BlockWriter& out) { writeAreas(out, patches); }));
     writeWholeFiles(streams);
 }
@@ -243,23 +245,12 @@ void writeMatrix(const fs::path& path, const PatchMatrix& patches, const std::st
 void writePointRows(const fs::path& path, const FormFactorMatrix& matrix, std::size_t columns,
                     const std::string& remainders, const std::string& comment, Progress& progress) {
     const Rows rows{matrix, columns, progress};
-    FileStream stream;
-    switch (requireFormat(path)) {
-    case MatrixFormat::MatrixMarket:
-        stream = fileOf(path, [&](BlockWriter& out) { writeMatrixMarket(out, rows, comment); });
-        break;
-    case MatrixFormat::Csv:
-        stream = fileOf(path, [&](BlockWriter& out) { writeCsv(out, rows, comment); });
-        break;
-    case MatrixFormat::NumPy:
-        stream = fileOf(path, [&](BlockWriter& out) { writeDenseNumPy(out, rows); });
-        break;
-    case MatrixFormat::View3D:
+    const MatrixFormat format = requireMatrixFormat(path);
+    if (format == MatrixFormat::View3D)
         throw UsageError(path.string() + ": View3D's format holds square matrices, not rows of points");
-    }
     const FileStream companion =
         fileOf(pointRowFiles(path).back(), [&](BlockWriter& out) { out.text("{}", remainders); });
-    writeWholeFiles(std::array{stream, companion});
+    writeWholeFiles(std::array{rowsFile(path, format, rows, comment), companion});
 }
 
 std::vector<fs::path> pointRowFiles(const fs::path& path) { return {path, appended(path, ".points.csv")}; }
