@@ -88,12 +88,6 @@ private:
 
 GlobalLineCounts::GlobalLineCounts(std::size_t patches) : rows_(patches) {}
 
-std::size_t GlobalLineCounts::bytes() const {
-    std::size_t bytes = rows_.size() * sizeof(rows_[0]);
-    for (const std::vector<std::uint8_t>& row : rows_) bytes += row.capacity();
-    return bytes;
-}
-
 /// Calls use(j, N_ij) for j > i, ascending.
 template <typename Use>
 void GlobalLineCounts::visit(std::size_t row, Use&& use) const {

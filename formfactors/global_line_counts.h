@@ -45,7 +45,6 @@ public:
 
     std::size_t size() const { return rows_.size(); } //!< #patches
     std::uint64_t lines() const { return lines_; }    //!< traced so far
-    std::size_t bytes() const;                        //!< of memory, about
 
     /// Counts the spans of `lines` further lines and clears the logs.
     void count(std::span<SpanLog> logs, std::uint64_t lines);

@@ -67,10 +67,4 @@ void GlobalLines::trace(GlobalLineCounts& counts, Progress& progress, const std:
     progress.end();
 }
 
-FormFactorMatrix GlobalLines::matrix(MatrixStorage storage, Progress& progress) const {
-    GlobalLineCounts counts(mesh_.size());
-    trace(counts, progress);
-    return counts.matrix(storage, progress);
-}
-
 } // namespace lambert

@@ -26,9 +26,6 @@ public:
     /// `counts` as after the last batch, and UsageError if the counts are not of this mesh and these options.
     void trace(GlobalLineCounts& counts, Progress& progress, const std::function<void()>& afterBatch = {}) const;
 
-    /// All at once: the rows of all patches.
-    FormFactorMatrix matrix(MatrixStorage storage, Progress& progress) const;
-
     const IsotropicLines& lines() const { return lines_; }
 
 private:

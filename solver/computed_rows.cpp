@@ -52,11 +52,8 @@ void ComputedRows::row(std::uint32_t patch, FormFactorRow& row) {
 }
 
 RgbSum ComputedRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity) {
-    FormFactorRow row;
-    compute(patch, row);
-    RgbSum sum(0.0);
-    for (const FormFactor& factor : row.entries) sum += factor.value * radiosity[factor.patch];
-    return sum;
+    std::vector<FormFactor> none;
+    return gather(patch, radiosity, {}, none);
 }
 
 RgbSum ComputedRows::gather(std::uint32_t patch, std::span<const RgbSum> radiosity, PatchRange aside,

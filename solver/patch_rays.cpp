@@ -78,7 +78,6 @@ PatchRays::PatchRays(const PatchMesh& mesh, const RayCaster& rays, Sampler sampl
         throw UsageError("the sampler of stochastic solvers: allowed are random and sobol");
 }
 
-/// Makes origins and directions of all rays, and returns how many.
 std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
     const std::size_t count = std::accumulate(batch.runs.begin(), batch.runs.end(), std::size_t{0},
                                               [](std::size_t sum, const RayRun& run) { return sum + run.count; });
@@ -172,13 +171,6 @@ void PatchRays::trace(std::uint64_t seed, Batch& batch) const {
             batch.target[first + lane] = target[lane];
         }
     }
-}
-
-std::vector<Ray> PatchRays::rays(std::uint64_t seed, Batch& batch) const {
-    const std::size_t count = make(seed, batch);
-    std::vector<Ray> result;
-    for (std::size_t i = 0; i < count; ++i) result.push_back(batch.ray(i));
-    return result;
 }
 
 } // namespace lambert

@@ -30,17 +30,18 @@ public:
         std::vector<std::uint32_t> run;    //!< into `runs`
         std::vector<std::uint32_t> target; //!< patch whose front is met, or back(), out()
 
-    private:
-        friend class PatchRays;
-        std::vector<std::uint32_t> bits, keys, runOf, all;
-        std::vector<float> unit, origin, direction, cell;
-        CellSorter sorter;
-
+        /// The i-th, run by run.
         Ray ray(std::size_t i) const {
             const std::size_t count = runOf.size();
             return {{origin[i], origin[i + count], origin[i + 2 * count]},
                     {direction[i], direction[i + count], direction[i + 2 * count]}};
         }
+
+    private:
+        friend class PatchRays;
+        std::vector<std::uint32_t> bits, keys, runOf, all;
+        std::vector<float> unit, origin, direction, cell;
+        CellSorter sorter;
     };
 
     /// `mesh` and `rays` (of the same scene) must outlive it. `sampler`: Random or Sobol, else throws UsageError.
@@ -50,12 +51,10 @@ public:
     std::uint32_t out() const { return static_cast<std::uint32_t>(mesh_.size()) + 1; } //!< target: outside of the scene
 
     void trace(std::uint64_t seed, Batch& batch) const;
-    /// The rays of a batch, run by run, as nothing but a benchmark or a test wants them.
-    std::vector<Ray> rays(std::uint64_t seed, Batch& batch) const;
-
-private:
+    /// Makes the rays of a batch, see Batch::ray, and returns how many; for who does not want them traced.
     std::size_t make(std::uint64_t seed, Batch& batch) const;
 
+private:
     const PatchMesh& mesh_;
     const RayCaster& rays_;
     Sampler sampler_;

@@ -39,7 +39,7 @@ struct LinesCase {
     }
     FormFactorMatrix matrix(const GlobalLineOptions& options, MatrixStorage storage = MatrixStorage::Double) const {
         Progress progress;
-        return GlobalLines(mesh, caster, options).matrix(storage, progress);
+        return counts(options).matrix(storage, progress);
     }
     Scene scene;
     LineCaster caster;

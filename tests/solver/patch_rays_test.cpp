@@ -38,7 +38,9 @@ TEST(PatchRays, ARunIsAPartOfThePatchsSequence) {
 std::vector<Ray> raysFrom(const PatchRays& rays, std::uint64_t first, std::uint32_t count) {
     PatchRays::Batch batch;
     batch.runs = {{5, first, count}};
-    return rays.rays(7, batch);
+    std::vector<Ray> result(rays.make(7, batch));
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] = batch.ray(k);
+    return result;
 }
 
 // Where the Sobol sequence ends, which has 32-bit points, another one follows.
