@@ -2,6 +2,8 @@
 
 #include "scene/box_index.h"
 
+#include <boost/functional/hash.hpp>
+
 #include <array>
 #include <cstdint>
 #include <unordered_map>
@@ -48,12 +50,7 @@ private:
     void chain(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& vertices) const;
 
     /// Vertices inserted into an edge, from the smaller end to the larger; edges without any are absent.
-    struct KeyHash {
-        std::size_t operator()(const Key& key) const {
-            return (std::uint64_t{key.first} << 32 | key.second) * 0x9E3779B97F4A7C15 >> 16;
-        }
-    };
-    std::unordered_map<Key, std::vector<std::uint32_t>, KeyHash> inserted_;
+    std::unordered_map<Key, std::vector<std::uint32_t>, boost::hash<Key>> inserted_;
     std::vector<Segment> segments_; ///< sorted by key
     std::vector<std::uint32_t> firstSegmentAt_, segmentsAt_;
 };

@@ -17,29 +17,6 @@ namespace lambert {
 
 namespace {
 
-/// Parts of a line, from 0 to 1; empty if from >= to.
-struct Interval {
-    double from = -std::numeric_limits<double>::infinity();
-    double to = std::numeric_limits<double>::infinity();
-
-    /// Keeps where a + t b < limit.
-    void below(double a, double b, double limit) {
-        if (b > 0.0)
-            to = std::min(to, (limit - a) / b);
-        else if (b < 0.0)
-            from = std::max(from, (limit - a) / b);
-        else if (a >= limit)
-            to = from;
-    }
-    bool isEmpty() const { return !(from < to); }
-    void unite(const Interval& other) {
-        if (other.isEmpty()) return;
-        if (isEmpty()) *this = other;
-        from = std::min(from, other.from);
-        to = std::max(to, other.to);
-    }
-};
-
 /// Where the line from p along d is nearer to a point than r.
 Interval nearPoint(glm::dvec2 p, glm::dvec2 d, double r) {
     const double a = glm::dot(d, d);

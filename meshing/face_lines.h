@@ -2,7 +2,9 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +24,29 @@ struct FaceLines {
     std::vector<bool> onBorder;          //!< #points
     std::vector<std::uint32_t> vertices; //!< #points, of the scene at points on the border; kNone inside
     std::vector<FaceLine> lines;
+};
+
+/// Parts of a line, from 0 to 1; empty if from >= to.
+struct Interval {
+    double from = -std::numeric_limits<double>::infinity();
+    double to = std::numeric_limits<double>::infinity();
+
+    /// Keeps where a + t b < limit.
+    void below(double a, double b, double limit) {
+        if (b > 0.0)
+            to = std::min(to, (limit - a) / b);
+        else if (b < 0.0)
+            from = std::max(from, (limit - a) / b);
+        else if (a >= limit)
+            to = from;
+    }
+    bool isEmpty() const { return !(from < to); }
+    void unite(const Interval& other) {
+        if (other.isEmpty()) return;
+        if (isEmpty()) *this = other;
+        from = std::min(from, other.from);
+        to = std::max(to, other.to);
+    }
 };
 
 struct FaceSegment {

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "meshing/disjoint_sets.h"
 #include "meshing/edge_crossings.h"
+#include "meshing/face_lines.h"
 #include "meshing/pair_triangles.h"
 #include "meshing/plane_frame.h"
 #include "meshing/prepare.h"
@@ -100,38 +101,23 @@ private:
         const glm::dvec3 b(scene_.positions[edges_.keys[edge].second]);
         const double from = height(glm::vec3(a)), to = height(glm::vec3(b));
         if (std::abs(to - from) > kSteep * glm::distance(a, b)) return std::nullopt;
-        double low = 0.0, high = 1.0;
-        const auto keep = [&](double value, double slope) { // where value + t slope > 0
-            if (slope > 0.0)
-                low = std::max(low, -value / slope);
-            else if (slope < 0.0)
-                high = std::min(high, -value / slope);
-            else if (!(value > 0.0))
-                high = low;
-        };
-        keep(from - least_, to - from);
-        keep(reach_ - from, from - to);
-        if (!(low < high)) return std::nullopt;
-        return OutlineEdge{glm::mix(a, b, low), glm::mix(a, b, high), glm::mix(from, to, 0.5 * (low + high))};
+        Interval within{0.0, 1.0};
+        within.below(-from, from - to, -least_);
+        within.below(from, to - from, reach_);
+        if (within.isEmpty()) return std::nullopt;
+        return OutlineEdge{glm::mix(a, b, within.from), glm::mix(a, b, within.to),
+                           glm::mix(from, to, 0.5 * (within.from + within.to))};
     }
 
     bool crossesPolygon(const OutlineEdge& edge) const {
         const glm::dvec2 a = frame_.project(glm::vec3(edge.from)), b = frame_.project(glm::vec3(edge.to));
-        double low = 0.0, high = 1.0;
+        Interval inside{0.0, 1.0};
         for (std::size_t k = 0; k < border_.size(); ++k) {
             const glm::dvec2 side = glm::normalize(border_[(k + 1) % border_.size()] - border_[k]);
-            const auto depth = [&](glm::dvec2 p) {
-                return side.x * (p.y - border_[k].y) - side.y * (p.x - border_[k].x) - least_;
-            };
-            const double from = depth(a), slope = depth(b) - from;
-            if (slope > 0.0)
-                low = std::max(low, -from / slope);
-            else if (slope < 0.0)
-                high = std::min(high, -from / slope);
-            else if (from < 0.0)
-                return false;
+            const double from = cross(side, a - border_[k]) - least_, to = cross(side, b - border_[k]) - least_;
+            inside.below(-from, from - to, 0.0);
         }
-        return low < high;
+        return !inside.isEmpty();
     }
 
     /// Sine of the angle by which a polygon rises from one of its edges, away from the polygon below; and to which side of the

@@ -1,5 +1,6 @@
 #include "meshing/weld.h"
 
+#include <boost/functional/hash.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -13,23 +14,12 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-struct CellHash {
-    std::size_t operator()(const Cell& cell) const {
-        std::uint64_t hash = 0;
-        for (const std::int64_t coordinate : cell) {
-            hash ^= static_cast<std::uint64_t>(coordinate) + 0x9E3779B97F4A7C15 + (hash << 6) + (hash >> 2);
-            hash *= 0xBF58476D1CE4E5B9;
-        }
-        return static_cast<std::size_t>(hash ^ (hash >> 31));
-    }
-};
-
 } // namespace
 
 std::vector<std::uint32_t> weldPositions(std::span<const glm::vec3> positions, float tolerance) {
     // With cells of four tolerances a ball of one tolerance touches at most two cells along each axis.
     const double cellsPerMetre = 0.25 / static_cast<double>(tolerance);
-    std::unordered_multimap<Cell, std::uint32_t, CellHash> representatives;
+    std::unordered_multimap<Cell, std::uint32_t, boost::hash<Cell>> representatives;
     representatives.reserve(positions.size());
     std::vector<std::uint32_t> result(positions.size());
 
