@@ -2,6 +2,7 @@
 
 #include "baking/encode.h"
 #include "core/error.h"
+#include "core/named.h"
 #include "core/text.h"
 #include "core/whole_file.h"
 
@@ -49,12 +50,9 @@ void write(const BakedMesh& mesh, const std::filesystem::path& path, BakedFormat
 } // namespace
 
 std::optional<BakedFormat> formatOf(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
-    if (extension == ".glb") return BakedFormat::Glb;
-    if (extension == ".gltf") return BakedFormat::Gltf;
-    if (extension == ".ply") return BakedFormat::Ply;
-    if (extension == ".obj") return BakedFormat::Obj;
-    return std::nullopt;
+    static constexpr std::array kFormats{Named{BakedFormat::Glb, ".glb"}, Named{BakedFormat::Gltf, ".gltf"},
+                                         Named{BakedFormat::Ply, ".ply"}, Named{BakedFormat::Obj, ".obj"}};
+    return valueNamed(kFormats, lowerCase(path.extension().string()));
 }
 
 const char* nameOf(Quantity quantity) { return quantity == Quantity::Radiosity ? "radiosity" : "irradiance"; }

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/named.h"
 #include "core/text.h"
 #include "core/whole_file.h"
 #include "formfactors/matrix_file.h"
@@ -194,13 +195,9 @@ FileStream rowsFile(const fs::path& path, MatrixFormat format, const Rows& rows,
 
 std::optional<MatrixFormat> matrixFormatOf(const fs::path& path) {
     const std::string extension = lowerCase(path.extension().string());
-    constexpr std::array<std::pair<std::string_view, MatrixFormat>, 4> known{{{".mtx", MatrixFormat::MatrixMarket},
-                                                                              {".npy", MatrixFormat::NumPy},
-                                                                              {".csv", MatrixFormat::Csv},
-                                                                              {".txt", MatrixFormat::View3D}}};
-    for (const auto& [name, format] : known)
-        if (name == extension) return format;
-    return std::nullopt;
+    static constexpr std::array kKnown{Named{MatrixFormat::MatrixMarket, ".mtx"}, Named{MatrixFormat::NumPy, ".npy"},
+                                       Named{MatrixFormat::Csv, ".csv"}, Named{MatrixFormat::View3D, ".txt"}};
+    return valueNamed(kKnown, extension);
 }
 
 MatrixFormat requireMatrixFormat(const fs::path& path) {

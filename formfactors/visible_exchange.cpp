@@ -112,14 +112,9 @@ private:
         if (length < 1e-12 * (glm::dot(toBegin, toBegin) + glm::dot(toEnd, toEnd))) return;
         normal /= length;
         const Plane plane = Plane::through(apex, normal);
+        if (!cuts(plane)) return;
         std::array<double, ConvexPolygon::kMostCorners> height;
-        bool above = false, below = false;
-        for (std::size_t k = 0; k < pair_.from.size; ++k) {
-            height[k] = plane.height(pair_.from.corners[k]);
-            above = above || height[k] > pair_.tolerance;
-            below = below || height[k] < -pair_.tolerance;
-        }
-        if (!above || !below) return;
+        for (std::size_t k = 0; k < pair_.from.size; ++k) height[k] = plane.height(pair_.from.corners[k]);
         const glm::dvec3 afterBegin = glm::cross(normal, toBegin), beforeEnd = glm::cross(toEnd, normal);
         bool anyAfter = false, anyBefore = false;
         for (std::size_t k = 0; k < pair_.from.size; ++k) {
@@ -134,14 +129,14 @@ private:
         if (anyAfter && anyBefore) add(plane);
     }
 
+    /// Whether a plane goes through the polygon.
+    bool cuts(const Plane& plane) const {
+        const auto [low, high] = cornerHeights(plane, pair_.from.points());
+        return low < -pair_.tolerance && high > pair_.tolerance;
+    }
+
     void add(const Plane& plane) {
-        bool above = false, below = false;
-        for (const glm::dvec3& p : pair_.from.points()) {
-            const double height = plane.height(p);
-            above = above || height > pair_.tolerance;
-            below = below || height < -pair_.tolerance;
-        }
-        if (!above || !below || known(plane)) return;
+        if (!cuts(plane) || known(plane)) return;
         if (planes_.size() >= kMostCuts)
             complete_ = false;
         else

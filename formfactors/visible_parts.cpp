@@ -8,26 +8,14 @@ namespace lambert {
 
 namespace {
 
-/// How the corners lie to a plane.
-struct Sides {
-    bool above = false, below = false;
-    Sides(const Plane& plane, const ConvexPolygon& polygon) {
-        for (const glm::dvec3& p : polygon.points()) {
-            const double height = plane.height(p);
-            above = above || height > 0.0;
-            below = below || height < 0.0;
-        }
-    }
-};
-
 /// Whether part of the polygon lies in front of all planes; then what does not is appended to `left`.
 bool subtractCone(std::span<const Plane> planes, const ConvexPolygon& polygon, std::vector<ConvexPolygon>& left) {
     std::array<std::size_t, ConvexPolygon::kMostCorners + 1> crossing;
     std::size_t count = 0;
     for (std::size_t k = 0; k < planes.size(); ++k) {
-        const Sides sides(planes[k], polygon);
-        if (!sides.above) return false;
-        if (sides.below) crossing[count++] = k;
+        const auto [low, high] = cornerHeights(planes[k], polygon.points());
+        if (!(high > 0.0)) return false;
+        if (low < 0.0) crossing[count++] = k;
     }
     const std::size_t first = left.size();
     ConvexPolygon inside = polygon, front, behind;
@@ -73,9 +61,9 @@ void VisibleParts::subtract(const Occluder& occluder, const ConvexPolygon& whole
             const glm::dvec3 &begin = occluder.corners[k - 1], &end = occluder.corners[k < n ? k : 0];
             plane = Plane::through(point_, side * glm::cross(end - point_, begin - point_));
         }
-        const Sides sides(plane, whole);
-        if (!sides.above) return;
-        if (sides.below) ++count;
+        const auto [low, high] = cornerHeights(plane, whole.points());
+        if (!(high > 0.0)) return;
+        if (low < 0.0) ++count;
     }
     std::vector<ConvexPolygon>& parts = scratch_.parts;
     for (std::size_t k = 0, end = parts.size(); k < end;) {

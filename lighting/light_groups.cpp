@@ -1,8 +1,11 @@
 #include "lighting/light_groups.h"
 
+#include "core/named.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 namespace lambert {
@@ -20,15 +23,10 @@ void makeNamesUnique(std::vector<LightGroup>& groups) {
 } // namespace
 
 std::string_view nameOf(LightGroup::Kind kind) {
-    switch (kind) {
-    case LightGroup::Kind::Material:
-        return "material";
-    case LightGroup::Kind::Lights:
-        return "lights";
-    case LightGroup::Kind::Environment:
-        return "sky";
-    }
-    return ""; // not reached
+    using Kind = LightGroup::Kind;
+    static constexpr std::array kKinds{Named{Kind::Material, "material"}, Named{Kind::Lights, "lights"},
+                                       Named{Kind::Environment, "sky"}};
+    return rowOf(kKinds, kind).name;
 }
 
 std::vector<LightGroup> lightGroups(const Scene& scene, const PatchMesh& mesh, const PatchOptics& optics) {
