@@ -31,6 +31,7 @@ namespace {
 using Vector = std::vector<RgbSum>;
 
 constexpr std::size_t kDirections = 2;
+constexpr int kMostIterations = 2'000;
 
 /// Per channel.
 RgbSum dot(const Vector& a, const Vector& b) {
@@ -154,7 +155,7 @@ private:
 } // namespace
 
 RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFactorRows& rows,
-                                         const ConjugateGradientOptions& options, Progress& progress,
+                                         const SolverOptions& options, Progress& progress,
                                          const SolverContext& context) {
     constexpr double kEnough = 0.5; // a start that gains less has reached what rounding allows
     const std::size_t count = problem.size();
@@ -179,7 +180,7 @@ RadiositySolution solveConjugateGradient(const SolverProblem& problem, FormFacto
         progress.advance();
     };
     const auto unfinished = [&] {
-        return solution.residual > options.tolerance && solution.iterations < options.maxIterations;
+        return solution.residual > options.tolerance && solution.iterations < kMostIterations;
     };
     /// The residual that was updated from step to step is not believed at start and end.
     const auto measure = [&] {

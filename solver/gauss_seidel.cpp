@@ -17,6 +17,7 @@ namespace {
 /// Patches whose rows are gathered in parallel: what they take from outside their block does not change meanwhile, and what
 /// they take from inside it follows in order. So the result is that of one patch after the other, on any number of threads.
 constexpr std::size_t kBlock = 128;
+constexpr int kMostSweeps = 10'000;
 
 struct Gathered {
     RgbSum outside{0.0};
@@ -50,13 +51,13 @@ double gaussSeidelSweep(const SolverProblem& problem, FormFactorRows& rows, doub
     return squares;
 }
 
-RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows& rows,
-                                   const GaussSeidelOptions& options, Progress& progress,
-                                   const SolverContext& context) {
+RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
+                                   Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();
     RadiositySolution solution;
     solution.radiosity = problem.startRadiosity(context.start);
     solution.irradiance.resize(count);
+    const double relaxation = options.relaxation.value_or(1.0);
     double previous = 0.0;
     const auto state = [&](auto& archive) {
         archive(solution.iterations);
@@ -69,13 +70,12 @@ RadiositySolution solveGaussSeidel(const SolverProblem& problem, FormFactorRows&
     context.restore(state);
     const SolverClock clock(solution.history);
     const auto unfinished = [&] {
-        return solution.iterations == 0 ||
-               (solution.iterations < options.maxIterations && solution.residual > options.tolerance);
+        return solution.iterations == 0 || (solution.iterations < kMostSweeps && solution.residual > options.tolerance);
     };
     progress.begin("solve", 0);
     while (unfinished()) {
         const double change =
-            problem.relativeNorm(gaussSeidelSweep(problem, rows, options.relaxation, solution.radiosity, progress));
+            problem.relativeNorm(gaussSeidelSweep(problem, rows, relaxation, solution.radiosity, progress));
         ++solution.iterations;
         // The residual is about the next sweep's change. To measure it takes as long as a sweep.
         solution.residual = solution.iterations > 1 && change < previous ? change * change / previous : change;

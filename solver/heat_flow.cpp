@@ -44,7 +44,7 @@ HeatFlow solveHeatFlow(const FormFactorMatrix& matrix, std::span<const float> ar
         const SolverProblem problem({area, reflectance, emitted}, fromOutside);
         StoredRows rows(matrix);
         const RadiositySolution solution =
-            solveConjugateGradient(problem, rows, {options.tolerance, options.maxIterations}, progress);
+            solveConjugateGradient(problem, rows, {.tolerance = options.tolerance}, progress);
         result.iterations = solution.iterations;
         result.residual = solution.residual;
         for (std::size_t i = 0; i < count; ++i) {

@@ -22,7 +22,6 @@ struct ThermalSurface {
 struct HeatFlowOptions {
     double environment = 0.0; //!< kelvin, of black surroundings beyond all openings
     double tolerance = 1e-10; //!< of the residual, relative
-    int maxIterations = 2'000;
 };
 
 struct HeatFlow {

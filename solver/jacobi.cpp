@@ -6,14 +6,20 @@
 
 namespace lambert {
 
-RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows, const JacobiOptions& options,
+namespace {
+
+constexpr int kMostIterations = 10'000;
+
+} // namespace
+
+RadiositySolution solveJacobi(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
                               Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();
     RadiositySolution solution;
     solution.radiosity = problem.startRadiosity(context.start);
     solution.irradiance.resize(count);
     std::vector<RgbSum> change(count);
-    const int limit = options.bounces > 0 ? std::min(options.bounces, options.maxIterations) : options.maxIterations;
+    const int limit = options.bounces > 0 ? std::min(options.bounces, kMostIterations) : kMostIterations;
     const auto state = [&](auto& archive) {
         archive(solution.iterations);
         archive(solution.residual);

@@ -50,8 +50,8 @@ public:
           counts_(problem.size()),
           sender_(problem.size()),
           light_(problem.size(), Rgb(0.0F)) {
-        sourcePower_ = orderedSum(problem.size(), 0.0,
-                                  [&](std::size_t i) { return problem.area(i) * sumOf(problem.source(i)); });
+        sourcePower_ =
+            orderedSum(problem.size(), 0.0, [&](std::size_t i) { return problem.area(i) * sumOf(problem.source(i)); });
     }
 
     std::span<const Rgb> irradiance() const { return light_; }

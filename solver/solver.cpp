@@ -57,13 +57,13 @@ RadiositySolution solve(const SolverProblem& problem, FormFactorRows& rows, cons
     checkSolver(o, !context.start.empty());
     switch (o.method) {
     case SolverMethod::Jacobi:
-        return solveJacobi(problem, rows, {o.tolerance, o.bounces, o.keepBounces}, progress, context);
+        return solveJacobi(problem, rows, o, progress, context);
     case SolverMethod::GaussSeidel:
-        return solveGaussSeidel(problem, rows, {o.tolerance, o.relaxation.value_or(1.0)}, progress, context);
+        return solveGaussSeidel(problem, rows, o, progress, context);
     case SolverMethod::Southwell:
-        return solveSouthwell(problem, rows, {o.tolerance}, progress, context);
+        return solveSouthwell(problem, rows, o, progress, context);
     case SolverMethod::ConjugateGradient:
-        return solveConjugateGradient(problem, rows, {o.tolerance}, progress, context);
+        return solveConjugateGradient(problem, rows, o, progress, context);
     }
     return {}; // not reached
 }

@@ -22,10 +22,11 @@ std::vector<std::string> solverNames();
 
 struct SolverOptions {
     SolverMethod method = SolverMethod::ConjugateGradient;
-    double tolerance = 1e-4;            //!< stop once the relative residual is at most this; 0: only `bounces` decides
-    int bounces = 0;                    //!< Jacobi: see there
-    bool keepBounces = false;           //!< Jacobi: see there
-    std::optional<double> relaxation{}; //!< Gauss-Seidel: see there; none: 1
+    double tolerance = 1e-4;  //!< stop once the relative residual is at most this; 0: only `bounces` decides
+    int bounces = 0;          //!< of Jacobi: stop after so many iterations, each of which adds one bounce; 0: no limit
+    bool keepBounces = false; //!< of Jacobi: keep what each iteration added: 12 bytes per patch and bounce
+    std::optional<double>
+        relaxation{}; //!< of Gauss-Seidel: 0 < W < 2: above 1 over-relaxes, which pays where much is reflected; none: 1
 };
 
 /// Throws UsageError for what can be known to be wrong without a problem: options out of range, or of another solver; bounces

@@ -14,6 +14,8 @@ namespace lambert {
 
 namespace {
 
+constexpr double kMostShotsPerPatch = 10'000; ///< on average
+
 /// The order of shots, also of light that a start had too much of.
 double powerOf(double area, const RgbSum& v) { return area * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z)); }
 
@@ -89,12 +91,12 @@ std::vector<RgbSum> Southwell::radiosity() const {
     return result;
 }
 
-RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
+RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
                                  Progress& progress, const SolverContext& context) {
     const std::size_t count = problem.size();
     // To measure the residual takes as long as to look for the brightest patch, and somewhat more.
     const auto interval = std::clamp<std::size_t>(count / 16, 1, 1024);
-    const auto limit = options.maxShotsPerPatch * static_cast<double>(count);
+    const auto limit = kMostShotsPerPatch * static_cast<double>(count);
     RadiositySolution solution;
     Southwell method(problem, rows);
     const auto state = [&](auto& archive) {

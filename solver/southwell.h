@@ -1,10 +1,6 @@
 #pragma once
 
-#include "core/progress.h"
-#include "solver/form_factor_rows.h"
-#include "solver/problem.h"
-#include "solver/solution.h"
-#include "solver/solver_checkpoint.h"
+#include "solver/solver.h"
 
 #include <cstdint>
 #include <vector>
@@ -56,16 +52,11 @@ private:
     FormFactorRow row_;
 };
 
-struct SouthwellOptions {
-    double tolerance = 1e-4;          //!< stop once the relative residual is at most this; above 0
-    double maxShotsPerPatch = 10'000; //!< on average
-};
-
 /// Solves the problem by Southwell's method: the patch with the most unshot power shoots next. With computed rows no matrix
 /// is stored. The history has a step every so many shots.
 ///
-/// A limit reached before the tolerance is not an error; see `residual`. Throws Cancelled, and what a checkpoint throws.
-RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SouthwellOptions& options,
+/// 10,000 shots per patch without reaching the tolerance are not an error; see `residual`. Throws Cancelled, and what a checkpoint throws.
+RadiositySolution solveSouthwell(const SolverProblem& problem, FormFactorRows& rows, const SolverOptions& options,
                                  Progress& progress, const SolverContext& context = {});
 
 } // namespace lambert

@@ -11,7 +11,7 @@
 namespace lambert {
 namespace {
 
-RadiositySolution jacobi(const SolverProblem& problem, const FormFactorMatrix& matrix, const JacobiOptions& options) {
+RadiositySolution jacobi(const SolverProblem& problem, const FormFactorMatrix& matrix, const SolverOptions& options) {
     Progress progress;
     StoredRows rows(matrix);
     return solveJacobi(problem, rows, options, progress);
