@@ -20,28 +20,6 @@ std::uint64_t mostRays(const LineSolverOptions& o) { return o.rays.value_or(Line
 /// 0: the rays decide.
 double target(const LineSolverOptions& o) { return o.targetError.value_or(o.rays ? 0.0 : o.kTargetError); }
 
-StochasticSolution relax(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
-                         const LineSolverOptions& o, Progress& progress, const SolverContext& context) {
-    StochasticRelaxationOptions options;
-    options.rays = mostRays(o);
-    options.targetError = target(o);
-    options.lines = o.lines;
-    options.lineSet = o.lineSet;
-    options.sampler = o.sampler;
-    options.seed = o.seed;
-    return solveStochasticRelaxation(problem, mesh, rays, options, progress, context);
-}
-
-StochasticSolution walk(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
-                        const LineSolverOptions& o, Progress& progress, const SolverContext& context) {
-    RandomWalkOptions options;
-    options.walks = mostRays(o);
-    options.targetError = target(o);
-    options.sampler = o.sampler;
-    options.seed = o.seed;
-    return solveRandomWalks(problem, mesh, rays, options, progress, context);
-}
-
 } // namespace
 
 std::optional<LineSolver> lineSolverByName(std::string_view name) { return valueNamed(kSolvers, name); }
@@ -61,9 +39,20 @@ void checkLineSolver(const LineSolverOptions& o) {
 }
 
 StochasticSolution solveByLines(const SolverProblem& problem, const PatchMesh& mesh, const RayCaster& rays,
-                                const LineSolverOptions& options, Progress& progress, const SolverContext& context) {
-    checkLineSolver(options);
-    return (options.solver == LineSolver::RandomWalk ? walk : relax)(problem, mesh, rays, options, progress, context);
+                                const LineSolverOptions& o, Progress& progress, const SolverContext& context) {
+    checkLineSolver(o);
+    if (o.solver == LineSolver::RandomWalk)
+        return solveRandomWalks(problem, mesh, rays,
+                                {.walks = mostRays(o), .targetError = target(o), .sampler = o.sampler, .seed = o.seed},
+                                progress, context);
+    return solveStochasticRelaxation(problem, mesh, rays,
+                                     {.rays = mostRays(o),
+                                      .targetError = target(o),
+                                      .lines = o.lines,
+                                      .lineSet = o.lineSet,
+                                      .sampler = o.sampler,
+                                      .seed = o.seed},
+                                     progress, context);
 }
 
 std::string lineSolverIdentity(const SolverProblem& problem, const LineSolverOptions& o) {
