@@ -41,9 +41,7 @@ MeshedScene meshScene(const Scene& scene, const MeshOptions& options, Progress& 
     MeshedScene result;
     const bool keepPolygons = !options.patchLength && options.patches == std::size_t{0};
     progress.begin("mesh", 0);
-    result.scene = std::make_shared<Scene>(prepareScene(
-        scene, {.joinTriangles = !keepPolygons, .mergeCoincident = !keepPolygons, .addCrossings = !keepPolygons},
-        &result.prepareReport));
+    result.scene = std::make_shared<Scene>(prepareScene(scene, {keepPolygons}, &result.prepareReport));
     if (result.scene->polygons.empty()) throw InputError("the scene has no polygons of any size");
     result.rays = std::make_unique<RayCaster>(*result.scene);
     result.mesh = buildPatchMesh(*result.scene, options, progress, &result.meshReport);

@@ -164,17 +164,17 @@ Scene prepareScene(const Scene& scene, const PrepareOptions& options, PrepareRep
             kept.backSurface = kept.surface;
         }
     }
-    // Twice: sheets of triangles can be joined once they are one, sheets of differently cut quads only coincide then.
-    if (options.mergeCoincident) mergeCoincident(prepared, counts);
-    if (options.joinTriangles) counts.joinedPairs = joinTriangles(prepared);
-    if (options.mergeCoincident) {
+    if (options.keepPolygons) {
+        counts.cover = findCoplanarOverlaps(prepared, tolerance);
+    } else {
+        // Twice: sheets of triangles can be joined once they are one, sheets of differently cut quads only coincide then.
+        mergeCoincident(prepared, counts);
+        counts.joinedPairs = joinTriangles(prepared);
         mergeCoincident(prepared, counts);
         counts.cover = coverCoplanar(prepared, tolerance);
-    } else {
-        counts.cover = findCoplanarOverlaps(prepared, tolerance);
     }
     compactPositions(prepared);
-    if (options.addCrossings) {
+    if (!options.keepPolygons) {
         const std::vector<glm::vec3> crossings = edgeCrossings(prepared, tolerance);
         prepared.positions.insert(prepared.positions.end(), crossings.begin(), crossings.end());
         counts.edgeCrossings = crossings.size();

@@ -8,11 +8,10 @@
 namespace lambert {
 
 struct PrepareOptions {
-    bool joinTriangles = true; //!< coplanar triangle pairs that make a good quad become one polygon
-    bool mergeCoincident =
-        true;                 //!< polygons with the same vertices become one, with what each shows on its side; where
-                              //!< others overlap in one plane, what is covered is taken away, see coverCoplanar
-    bool addCrossings = true; //!< points where edges cross become vertices, see edgeCrossings
+    /// Else coplanar triangle pairs that make a good quad become one polygon; polygons with the same vertices become one, with
+    /// what each shows on its side; where others overlap in one plane, what is covered is taken away, see coverCoplanar; and
+    /// points where edges cross become vertices, see edgeCrossings.
+    bool keepPolygons = false;
 };
 
 struct PrepareReport {

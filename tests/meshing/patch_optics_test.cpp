@@ -217,7 +217,7 @@ TEST(PrepareScene, JoinedTrianglesShowWhatTheyShowed) {
     half({1, 2, 3});
     half({3, 0, 1});
     scene.polygons.erase(scene.polygons.begin());
-    const Scene split = prepareScene(scene, {.joinTriangles = false});
+    const Scene split = prepareScene(scene, {.keepPolygons = true});
     const PatchMesh triangles = meshOf(split, 0);
     const PatchOptics ofTriangles = patchOptics(split, triangles);
     PrepareReport report;

@@ -37,7 +37,7 @@ TEST(PrepareScene, MakesOneQuadOfTheHalvesOfARectangle) {
 
 TEST(PrepareScene, KeepsTrianglesIfAsked) {
     PrepareReport report;
-    EXPECT_EQ(prepareScene(halves(), {.joinTriangles = false}, &report).polygons.size(), 2U);
+    EXPECT_EQ(prepareScene(halves(), {.keepPolygons = true}, &report).polygons.size(), 2U);
     EXPECT_EQ(report.joinedPairs, 0U);
 }
 
@@ -155,7 +155,7 @@ TEST(PrepareScene, PolygonsOnTheSameVerticesBecomeOne) {
     EXPECT_EQ(report.duplicatePolygons, 0U);
     EXPECT_EQ(report.cover.coveredPolygons, 1U);
     EXPECT_EQ(report.mergedSheets, 1U);
-    EXPECT_EQ(prepareScene(quadScene(quads, materials), {.mergeCoincident = false}).polygons.size(), 3U);
+    EXPECT_EQ(prepareScene(quadScene(quads, materials), {.keepPolygons = true}).polygons.size(), 3U);
 }
 
 } // namespace
