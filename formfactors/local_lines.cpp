@@ -89,7 +89,7 @@ void LocalLines::makeLines(std::uint32_t patch, Lines& lines) const {
     const LineArrays arrays(lines.coordinates, count);
     const glm::vec3 offset = patchOriginOffset(rays_, mesh_, patch) * mesh_.normal[patch];
     PatchPoints(mesh_, patch)
-        .fill(lines.points.data() + std::size_t{2} * count, count, offset, arrays.originX, arrays.originY,
+        .fill(lines.points.data() + std::size_t{2} * count, count, count, offset, arrays.originX, arrays.originY,
               arrays.originZ);
 }
 

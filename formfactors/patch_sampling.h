@@ -30,9 +30,10 @@ public:
     /// Area of the first of the triangles (0, 1, 2) and (0, 2, 3), as a share of both.
     float firstShare() const { return static_cast<float>(area012_ / (area012_ + area023_)); }
 
-    /// Points, plus `offset`, for `count` points of the unit square, all first coordinates before the second ones. The same in single
-    /// precision, and vectorised where the file is compiled with -fno-math-errno.
-    void fill(const float* u, std::size_t count, const glm::vec3& offset, float* x, float* y, float* z) const {
+    /// Points, plus `offset`, for `count` points of the unit square, the second coordinates `stride` after the first ones. The same in
+    /// single precision, and vectorised where the file is compiled with -fno-math-errno.
+    void fill(const float* u, std::size_t stride, std::size_t count, const glm::vec3& offset, float* x, float* y,
+              float* z) const {
         const glm::vec3 a = corners_[0] + offset;
         const glm::vec3 b = corners_[1] - corners_[0];
         const glm::vec3 c = corners_[2] - corners_[0];
@@ -45,8 +46,8 @@ public:
             const bool first = u[i] < share; // as uniformQuad
             const float rescaled = first ? u[i] * inverse : (u[i] - share) * inverseRest;
             const float root = std::sqrt(rescaled < 1.0F ? rescaled : 1.0F);
-            const float v = root * (1.0F - u[i + count]);
-            const float w = root * u[i + count];
+            const float v = root * (1.0F - u[i + stride]);
+            const float w = root * u[i + stride];
             x[i] = a.x + v * (first ? b.x : c.x) + w * (first ? c.x : d.x);
             y[i] = a.y + v * (first ? b.y : c.y) + w * (first ? c.y : d.y);
             z[i] = a.z + v * (first ? b.z : c.z) + w * (first ? c.z : d.z);

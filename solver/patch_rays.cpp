@@ -114,14 +114,9 @@ std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
     ray = 0;
     for (const RayRun& run : batch.runs) {
         const OrthonormalBasis frame(mesh_.normal[run.patch]);
-        const PatchPoints points(mesh_, run.patch);
-        const glm::vec3 offset = patchOriginOffset(rays_, mesh_, run.patch) * frame.z;
-        const auto& corners = points.corners();
-        const glm::vec3 a = corners[0] + offset;
-        const std::array edges{corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]};
-        const float share = points.firstShare();
-        const float inverse = share > 0.0F ? 1.0F / share : 0.0F;
-        const float inverseRest = share < 1.0F ? 1.0F / (1.0F - share) : 0.0F;
+        PatchPoints(mesh_, run.patch)
+            .fill(u + ray, count, run.count, patchOriginOffset(rays_, mesh_, run.patch) * frame.z,
+                  batch.origin.data() + ray, batch.origin.data() + ray + count, batch.origin.data() + ray + 2 * count);
         for (std::uint32_t k = 0; k < run.count; ++k, ++ray) {
             const float lx = batch.direction[ray];
             const float ly = batch.direction[ray + count];
@@ -129,16 +124,6 @@ std::size_t PatchRays::make(std::uint64_t seed, Batch& batch) const {
             batch.direction[ray] = lx * frame.x.x + ly * frame.y.x + lz * frame.z.x;
             batch.direction[ray + count] = lx * frame.x.y + ly * frame.y.y + lz * frame.z.y;
             batch.direction[ray + 2 * count] = lx * frame.x.z + ly * frame.y.z + lz * frame.z.z;
-            const std::size_t half = u[ray] < share ? 0 : 1; // as uniformQuad
-            const float rescaled = half == 0 ? u[ray] * inverse : (u[ray] - share) * inverseRest;
-            const float root = std::sqrt(std::min(rescaled, 1.0F));
-            const float v = root * (1.0F - u[ray + count]);
-            const float w = root * u[ray + count];
-            const glm::vec3& b = edges[half];
-            const glm::vec3& c = edges[half + 1];
-            batch.origin[ray] = a.x + v * b.x + w * c.x;
-            batch.origin[ray + count] = a.y + v * b.y + w * c.y;
-            batch.origin[ray + 2 * count] = a.z + v * b.z + w * c.z;
         }
     }
     return count;
