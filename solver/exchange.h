@@ -4,7 +4,6 @@
 #include "solver/fixed_point_sum.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -45,23 +44,20 @@ struct Losses {
 
 /// Losses as integers; one per thread.
 struct LossUnits {
-    std::array<std::int64_t, 3> backFaces{}, escaped{};
+    glm::vec<3, std::int64_t> backFaces{0}, escaped{0};
 
     void add(bool back, const Rgb& value, const FixedPointScale& scale) {
-        auto& sum = back ? backFaces : escaped;
-        for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += scale.units(static_cast<double>(value[c]));
+        for (int c = 0; c < 3; ++c) (back ? backFaces : escaped)[c] += scale.units(static_cast<double>(value[c]));
     }
     void operator+=(const LossUnits& other) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            backFaces[c] += other.backFaces[c];
-            escaped[c] += other.escaped[c];
-        }
+        backFaces += other.backFaces;
+        escaped += other.escaped;
     }
     Losses value(const FixedPointScale& scale) const {
         Losses losses;
         for (int c = 0; c < 3; ++c) {
-            losses.backFaces[c] = scale.value(backFaces[static_cast<std::size_t>(c)]);
-            losses.escaped[c] = scale.value(escaped[static_cast<std::size_t>(c)]);
+            losses.backFaces[c] = scale.value(backFaces[c]);
+            losses.escaped[c] = scale.value(escaped[c]);
         }
         return losses;
     }

@@ -24,14 +24,10 @@ Field moved(const Field& a, double scale, const Field& b, const Field& c) {
 }
 
 /// With shadow rays that begin and end twice as far off the surfaces.
-std::vector<Receiver> raised(std::span<const Receiver> receivers) {
-    std::vector<Receiver> result(receivers.begin(), receivers.end());
-    for (Receiver& receiver : result) receiver.lift *= 2.0F;
-    return result;
-}
-std::vector<VirtualPointLight> raised(std::span<const VirtualPointLight> lights) {
-    std::vector<VirtualPointLight> result(lights.begin(), lights.end());
-    for (VirtualPointLight& light : result) light.lift *= 2.0F;
+template <typename Points>
+auto raised(const Points& points) {
+    std::vector result(points.begin(), points.end());
+    for (auto& point : result) point.lift *= 2.0F;
     return result;
 }
 
