@@ -63,7 +63,7 @@ void tileDirections(const HemicubeFace& face, int column, int row, int resolutio
     }
 }
 
-Hemicube::Hemicube(const PatchMesh& mesh, const RayCaster& rays, const HemicubeOptions& options)
+Hemicube::Hemicube(const PatchMesh& mesh, const RayCaster& rays, const ViewOptions& options)
     : mesh_(mesh), rays_(rays), fewPolygons_(false), options_(options) {
     const int r = options.resolution;
     if (r < 4 || r > 4096 || r % 2 != 0)
@@ -115,7 +115,7 @@ std::uint64_t Hemicube::raysPerRow() const {
 }
 
 Viewpoint Hemicube::viewpoint(std::uint32_t patch, int index) const {
-    return lambert::viewpoint(mesh_, rays_, patch, index, options_.perPatch, options_.randomRotation, options_.seed);
+    return lambert::viewpoint(mesh_, rays_, patch, index, options_);
 }
 
 void Hemicube::row(std::uint32_t patch, RowAccumulator& accumulator) const {
@@ -128,8 +128,7 @@ void Hemicube::row(std::uint32_t patch, RowAccumulator& accumulator) const {
 
 void Hemicube::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
                         RowAccumulator& accumulator) const {
-    for (int k = 0; k < options_.perPatch; ++k)
-        addHemicube(origin, normal, options_.randomRotation ? viewAngle(index, k, options_.seed) : 0.0F, accumulator);
+    for (int k = 0; k < options_.perPatch; ++k) addHemicube(origin, normal, viewAngle(index, k, options_), accumulator);
     accumulator.scale(1.0 / options_.perPatch);
 }
 

@@ -14,21 +14,15 @@ namespace lambert {
 class BlockCover;
 class HitSum;
 
-struct HemicubeOptions {
-    int resolution = 128;       //!< pixels along an edge of the top face; even, 4 to 4096
-    int perPatch = 1;           //!< hemicubes spread over a patch, 1 to 1024; more for patches with near neighbours
-    bool randomRotation = true; //!< turns each hemicube about its normal by an angle of its own
-    std::uint64_t seed = 1;     //!< of the angles and places
-};
-
 /// Form factors from the centre of each patch (or several points of it) through the pixels of a half cube, traced as packets of 4 × 4
 /// pixels. In scenes of few polygons most pixels need no ray: see BlockCover.
 ///
 /// M. F. Cohen, D. P. Greenberg, "The hemi-cube: a radiosity solution for complex environments", SIGGRAPH 1985.
 class Hemicube : public FormFactorMethod {
 public:
-    /// `mesh` and `rays` (of the same scene) must outlive the method. Throws UsageError for a resolution out of range.
-    Hemicube(const PatchMesh& mesh, const RayCaster& rays, const HemicubeOptions& options);
+    /// `mesh` and `rays` (of the same scene) must outlive the method. The resolution is in pixels along an
+    /// edge of the top face: even, 4 to 4096. Throws UsageError for options out of range.
+    Hemicube(const PatchMesh& mesh, const RayCaster& rays, const ViewOptions& options);
 
     void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
     std::size_t patchCount() const override { return mesh_.size(); }
@@ -47,7 +41,7 @@ private:
     const PatchMesh& mesh_;
     const RayCaster& rays_;
     bool fewPolygons_;
-    HemicubeOptions options_;
+    ViewOptions options_;
 
     /// 4 × 4 pixels: their delta form factors, the whole hemicube's normalised to the sum 1.
     struct Tile {

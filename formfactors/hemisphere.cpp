@@ -26,7 +26,7 @@ void turnedDirections(const OrthonormalBasis& basis, const glm::vec3* local, Ray
 
 } // namespace
 
-Hemisphere::Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const HemisphereOptions& options)
+Hemisphere::Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const ViewOptions& options)
     : mesh_(mesh), rays_(rays), options_(options) {
     const int r = options.resolution;
     if (r < 4 || r > 4096 || r % 4 != 0)
@@ -45,15 +45,13 @@ std::uint64_t Hemisphere::raysPerRow() const {
 
 void Hemisphere::row(std::uint32_t patch, RowAccumulator& accumulator) const {
     for (int k = 0; k < options_.perPatch; ++k)
-        addHemisphere(viewpoint(mesh_, rays_, patch, k, options_.perPatch, options_.randomRotation, options_.seed),
-                      mesh_.normal[patch], accumulator);
+        addHemisphere(viewpoint(mesh_, rays_, patch, k, options_), mesh_.normal[patch], accumulator);
 }
 
 void Hemisphere::pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
                           RowAccumulator& accumulator) const {
     for (int k = 0; k < options_.perPatch; ++k)
-        addHemisphere({origin, options_.randomRotation ? viewAngle(index, k, options_.seed) : 0.0F}, normal,
-                      accumulator);
+        addHemisphere({origin, viewAngle(index, k, options_)}, normal, accumulator);
 }
 
 void Hemisphere::addHemisphere(const Viewpoint& view, const glm::vec3& normal, RowAccumulator& accumulator) const {

@@ -9,13 +9,6 @@
 
 namespace lambert {
 
-struct HemisphereOptions {
-    int resolution = 96; //!< cells along an edge of the square that is mapped to the disk; multiple of 4, 4 to 4096
-    int perPatch = 1;    //!< hemispheres spread over a patch, 1 to 1024; more for patches with near neighbours
-    bool randomRotation = true; //!< turns each about its normal by an angle of its own
-    std::uint64_t seed = 1;     //!< of the angles and places
-};
-
 /// Form factors from points of each patch through cells of equal weight: the disk of Nusselt's analogue, divided by the
 /// concentric map, lifted to the hemisphere. Each of the R² directions is worth 1 / R².
 ///
@@ -23,8 +16,9 @@ struct HemisphereOptions {
 /// K. Chiu 1997 (core/warps.h).
 class Hemisphere : public FormFactorMethod {
 public:
-    /// `mesh` and `rays` (of the same scene) must outlive the method. Throws UsageError for options out of range.
-    Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const HemisphereOptions& options);
+    /// `mesh` and `rays` (of the same scene) must outlive the method. The resolution is in cells along an
+    /// edge of the square that is mapped to the disk: a multiple of 4, 4 to 4096. Throws UsageError for options out of range.
+    Hemisphere(const PatchMesh& mesh, const RayCaster& rays, const ViewOptions& options);
 
     void row(std::uint32_t patch, RowAccumulator& accumulator) const override;
     void pointRow(const glm::vec3& origin, const glm::vec3& normal, std::uint32_t index,
@@ -37,7 +31,7 @@ private:
 
     const PatchMesh& mesh_;
     const RayCaster& rays_;
-    HemisphereOptions options_;
+    ViewOptions options_;
     std::vector<glm::vec3> directions_; ///< #R², about +z, in tiles of 4 × 4 cells
 };
 

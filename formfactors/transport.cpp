@@ -222,13 +222,12 @@ namespace {
 std::unique_ptr<FormFactorMethod> makeOpenMethod(const TransportPlan& plan, const PatchMesh& mesh,
                                                  const RayCaster& rays) {
     const TransportOptions& o = plan.options;
+    const auto views = [&o] { return ViewOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed}; };
     switch (o.method) {
     case TransportMethod::Hemicube:
-        return std::make_unique<Hemicube>(mesh, rays,
-                                          HemicubeOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
+        return std::make_unique<Hemicube>(mesh, rays, views());
     case TransportMethod::Hemisphere:
-        return std::make_unique<Hemisphere>(
-            mesh, rays, HemisphereOptions{o.resolution.value(), o.perPatch, o.randomRotation, o.seed});
+        return std::make_unique<Hemisphere>(mesh, rays, views());
     case TransportMethod::LocalLines:
         return std::make_unique<LocalLines>(mesh, rays, LocalLinesOptions{o.lines.value(), o.sampler, o.seed});
     case TransportMethod::Auto:

@@ -1,7 +1,8 @@
 #include "lighting/black_backs.h"
 
-#include "formfactors/hemicube.h"
+#include "formfactors/hemicube_face.h"
 #include "formfactors/matrix_quality.h"
+#include "formfactors/viewpoints.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -20,9 +21,7 @@ constexpr int kSamples = 256;   ///< hemicubes that look which backs are met
 constexpr int kResolution = 16; ///< of these
 constexpr int kPlaces = 4;      ///< of these on a patch: some may lie under what stands on it
 
-bool emits(const PatchOptics& optics, std::size_t patch) {
-    return sumOf(RgbSum(optics.emittedRadiosity[patch])) > 0.0;
-}
+bool emits(const PatchOptics& optics, std::size_t patch) { return sumOf(RgbSum(optics.emittedRadiosity[patch])) > 0.0; }
 
 /// Where the rays of some places end that meet backs; sums over the places of the parts of each.
 struct Ends {
@@ -46,10 +45,10 @@ struct Ends {
 class Lookout {
 public:
     Lookout(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays)
-        : mesh_(mesh), optics_(optics), rays_(rays), places_(mesh, rays, {.resolution = kResolution, .perPatch = kPlaces}) {}
+        : mesh_(mesh), optics_(optics), rays_(rays) {}
 
     void look(std::uint32_t patch, int place, Ends& ends) const {
-        const Viewpoint from = places_.viewpoint(patch, place);
+        const Viewpoint from = viewpoint(mesh_, rays_, patch, place, {.perPatch = kPlaces});
         const glm::vec3 normal = mesh_.normal[patch];
         std::vector<double> backs(ends.met.size(), 0.0);
         double occluders = 0.0;
@@ -81,7 +80,6 @@ private:
     const PatchMesh& mesh_;
     const PatchOptics& optics_;
     const RayCaster& rays_;
-    Hemicube places_;
 };
 
 /// One of the shares, as it is found: of the weights of open patches, what their rays to backs carry.

@@ -94,12 +94,12 @@ Slope aliasingSlope() {
 // slope's standard error is that over the 32 scenes, some 0.017: 4 of them are exceeded by chance (Student's t, 31 degrees of
 // freedom) once in 2700 choices of seeds, and −1/2 or −1 are 14 away.
 TEST(Hemicube, AliasingFallsWithThreeQuartersOfThePower) {
-    const Slope slope = aliasingSlope<Hemicube, HemicubeOptions>();
+    const Slope slope = aliasingSlope<Hemicube, ViewOptions>();
     EXPECT_NEAR(slope.value, -0.75, 4.0 * slope.standardError);
 }
 
 TEST(Hemisphere, AliasingFallsWithThreeQuartersOfThePower) {
-    const Slope slope = aliasingSlope<Hemisphere, HemisphereOptions>();
+    const Slope slope = aliasingSlope<Hemisphere, ViewOptions>();
     EXPECT_NEAR(slope.value, -0.75, 4.0 * slope.standardError);
 }
 

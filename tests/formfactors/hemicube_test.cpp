@@ -17,8 +17,7 @@ using Quad = std::array<glm::vec3, 4>;
 
 /// A scene, its patches and the matrix by hemicubes.
 struct Transport {
-    Transport(const Scene& input, double patchLength, HemicubeOptions options)
-        : scene(prepareScene(input)), rays(scene) {
+    Transport(const Scene& input, double patchLength, ViewOptions options) : scene(prepareScene(input)), rays(scene) {
         Progress progress;
         MeshOptions meshOptions;
         meshOptions.patchLength = patchLength;

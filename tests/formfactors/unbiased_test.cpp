@@ -112,8 +112,8 @@ TEST(AllRayMethods, RowsCloseInAClosedBoxAndTwoSidesAreFound) {
     Scene scene = closedBox(kRoom432);
     const ExactCase exact(scene);
     const std::array<std::unique_ptr<FormFactorMethod>, 3> methods{
-        std::make_unique<Hemicube>(exact.mesh, exact.rays, HemicubeOptions{.resolution = 32, .perPatch = 3}),
-        std::make_unique<Hemisphere>(exact.mesh, exact.rays, HemisphereOptions{.resolution = 32, .perPatch = 2}),
+        std::make_unique<Hemicube>(exact.mesh, exact.rays, ViewOptions{.resolution = 32, .perPatch = 3}),
+        std::make_unique<Hemisphere>(exact.mesh, exact.rays, ViewOptions{.resolution = 32, .perPatch = 2}),
         std::make_unique<LocalLines>(exact.mesh, exact.rays, LocalLinesOptions{.lines = 1001})};
     for (const auto& method : methods) {
         for (std::uint32_t i = 0; i < 6; ++i) {
@@ -129,8 +129,8 @@ TEST(AllRayMethods, AScaleOfAPowerOfTwoChangesNoDigit) {
     const auto rows = [](float scale) {
         const ExactCase c(closedBox(scale * kRoom432));
         const std::array<std::unique_ptr<FormFactorMethod>, 3> methods{
-            std::make_unique<Hemicube>(c.mesh, c.rays, HemicubeOptions{.resolution = 32}),
-            std::make_unique<Hemisphere>(c.mesh, c.rays, HemisphereOptions{.resolution = 32}),
+            std::make_unique<Hemicube>(c.mesh, c.rays, ViewOptions{.resolution = 32}),
+            std::make_unique<Hemisphere>(c.mesh, c.rays, ViewOptions{.resolution = 32}),
             std::make_unique<LocalLines>(c.mesh, c.rays, LocalLinesOptions{.lines = 1000})};
         std::vector<FormFactorRow> result;
         for (const auto& method : methods)
