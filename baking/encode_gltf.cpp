@@ -1,13 +1,13 @@
 #include "baking/encode.h"
+
 #include "baking/exposure.h"
+#include "core/box.h"
 #include "core/text.h"
 #include "scene/gltf/writer.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-
-#include <limits>
 
 namespace lambert {
 
@@ -134,13 +134,9 @@ private:
     }
 
     void setBounds(std::size_t accessor, const Part& part) {
-        glm::vec3 lower(std::numeric_limits<float>::max());
-        glm::vec3 upper(std::numeric_limits<float>::lowest());
-        for (const std::uint32_t v : part.vertices) {
-            lower = glm::min(lower, mesh_.positions[v]);
-            upper = glm::max(upper, mesh_.positions[v]);
-        }
-        writer_.setBounds(accessor, lower, upper);
+        Box<glm::vec3> box;
+        for (const std::uint32_t v : part.vertices) box.add(mesh_.positions[v]);
+        writer_.setBounds(accessor, box.lower, box.upper);
     }
 
     Json primitive(const Part& part, std::size_t material) {

@@ -1,5 +1,6 @@
 #include "formfactors/block_visibility.h"
 
+#include "core/box.h"
 #include "core/parallel.h"
 #include "formfactors/closed_form.h"
 
@@ -24,12 +25,9 @@ ConvexPolygon rectangleAround(std::span<const glm::dvec3> points, const Plane& p
     for (const glm::dvec3& direction : directions) {
         const glm::dvec3 u = glm::normalize(direction - glm::dot(direction, plane.normal) * plane.normal);
         const glm::dvec3 v = glm::cross(plane.normal, u);
-        glm::dvec2 lower(std::numeric_limits<double>::max()), upper(-lower);
-        for (const glm::dvec3& p : points) {
-            const glm::dvec2 q(glm::dot(p, u), glm::dot(p, v));
-            lower = glm::min(lower, q);
-            upper = glm::max(upper, q);
-        }
+        Box<glm::dvec2> box;
+        for (const glm::dvec3& p : points) box.add({glm::dot(p, u), glm::dot(p, v)});
+        const auto [lower, upper] = box;
         const double area = (upper.x - lower.x) * (upper.y - lower.y);
         if (!(area < smallest)) continue;
         smallest = area;
@@ -194,16 +192,15 @@ BlockVisibility::Tree BlockVisibility::treeOver(std::vector<Leaf> leaves) {
 std::uint32_t BlockVisibility::addNode(Tree& tree, std::span<Leaf> leaves) {
     const auto index = static_cast<std::uint32_t>(tree.size());
     Node node{leaves[0].extents, leaves[0].item};
-    glm::dvec3 lower = leaves[0].extents.centre(), upper = lower;
+    Box<glm::dvec3> centres;
     for (const Leaf& leaf : leaves) {
         node.extents.add(leaf.extents);
         node.item = std::max(node.item, leaf.item);
-        lower = glm::min(lower, leaf.extents.centre());
-        upper = glm::max(upper, leaf.extents.centre());
+        centres.add(leaf.extents.centre());
     }
     tree.push_back(node);
     if (leaves.size() == 1) return index;
-    const glm::dvec3 size = upper - lower;
+    const glm::dvec3 size = centres.size();
     const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t half = leaves.size() / 2;
     std::nth_element(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(half), leaves.end(),

@@ -1,5 +1,6 @@
 #include "formfactors/patch_blocks.h"
 
+#include "core/box.h"
 #include "core/vector_clones.h"
 #include "formfactors/quadrature.h"
 
@@ -50,12 +51,9 @@ std::vector<WeightedPoint> gaussPoints(const PatchMesh& mesh, std::size_t patch)
 /// Orders patches so that every 16 of them lie close together.
 void groupNeighbours(const PatchMesh& mesh, std::span<std::uint32_t> patches) {
     if (patches.size() <= kLanes) return;
-    glm::vec3 lower(1e30F), upper(-1e30F);
-    for (const std::uint32_t patch : patches) {
-        lower = glm::min(lower, mesh.centroid[patch]);
-        upper = glm::max(upper, mesh.centroid[patch]);
-    }
-    const glm::vec3 extent = upper - lower;
+    Box<glm::vec3> box;
+    for (const std::uint32_t patch : patches) box.add(mesh.centroid[patch]);
+    const glm::vec3 extent = box.size();
     const int axis = extent.x >= std::max(extent.y, extent.z) ? 0 : extent.y >= extent.z ? 1 : 2;
     const std::size_t half = std::max<std::size_t>(patches.size() / 2 / kLanes, 1) * kLanes;
     std::nth_element(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(half), patches.end(),
@@ -171,7 +169,7 @@ PatchBlocks::PatchBlocks(const PatchMesh& mesh) : blockOf_(mesh.size()) {
 void PatchBlocks::addBlock(const PatchMesh& mesh, std::span<const std::uint32_t> patches) {
     Block& block = blocks_.emplace_back();
     block.count = static_cast<std::uint32_t>(patches.size());
-    glm::vec3 lower(1e30F), upper(-1e30F);
+    Box<glm::vec3> box;
     block.flat = true;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const bool used = lane < patches.size();
@@ -197,15 +195,12 @@ void PatchBlocks::addBlock(const PatchMesh& mesh, std::span<const std::uint32_t>
             area += gauss[k].weight;
         }
         block.area[lane] = used ? static_cast<float>(area) : 0.0F;
-        for (int k = 0; k < mesh.cornerCount(patch); ++k) {
-            lower = glm::min(lower, mesh.position(patch, k));
-            upper = glm::max(upper, mesh.position(patch, k));
-        }
+        for (int k = 0; k < mesh.cornerCount(patch); ++k) box.add(mesh.position(patch, k));
         block.flat = block.flat && mesh.polygon[patch] == mesh.polygon[patches[0]] &&
                      mesh.isBack(patch) == mesh.isBack(patches[0]);
     }
-    block.centre = 0.5F * (lower + upper);
-    block.reach = 0.5F * glm::distance(lower, upper);
+    block.centre = 0.5F * (box.lower + box.upper);
+    block.reach = 0.5F * glm::distance(box.lower, box.upper);
 }
 
 bool PatchBlocks::factors(const Viewer& viewer, const Block& block, float tolerance, Factors& result) {

@@ -1,5 +1,6 @@
 #include "formfactors/patch_clusters.h"
 
+#include "core/box.h"
 #include "formfactors/coplanar_contacts.h"
 #include "formfactors/quadrature.h"
 
@@ -66,13 +67,10 @@ PatchClusters::PatchClusters(const Scene& scene, const PatchMesh& mesh, const Oc
     directions_ = directions.list();
 
     std::vector<std::uint32_t> order = divideAtContacts(occluderOf, occluders);
-    glm::dvec3 lower(std::numeric_limits<double>::max()), upper = -lower;
-    for (const Target& t : targets_) {
-        lower = glm::min(lower, t.centre);
-        upper = glm::max(upper, t.centre);
-    }
+    Box<glm::dvec3> centres;
+    for (const Target& t : targets_) centres.add(t.centre);
     // Targets that face elsewhere are as far as the other end of the scene.
-    if (!order.empty()) build(order, 0, order.size(), glm::distance(lower, upper));
+    if (!order.empty()) build(order, 0, order.size(), glm::distance(centres.lower, centres.upper));
 }
 
 std::vector<std::uint32_t> PatchClusters::divideAtContacts(const std::vector<std::uint32_t>& occluderOf,

@@ -1,5 +1,6 @@
 #include "meshing/face_mesher.h"
 
+#include "core/box.h"
 #include "core/triangulation.h"
 
 #include <glm/common.hpp>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace lambert {
 
@@ -29,13 +29,10 @@ using Line = std::array<std::uint32_t, 2>;
 class Lattice {
 public:
     Lattice(std::span<const glm::dvec2> border, double spacing) {
-        lower_ = glm::dvec2(std::numeric_limits<double>::max());
-        glm::dvec2 upper(std::numeric_limits<double>::lowest());
-        for (const glm::dvec2& p : border) {
-            lower_ = glm::min(lower_, p);
-            upper = glm::max(upper, p);
-        }
-        const glm::dvec2 size = upper - lower_;
+        Box<glm::dvec2> box;
+        for (const glm::dvec2& p : border) box.add(p);
+        lower_ = box.lower;
+        const glm::dvec2 size = box.size();
         for (int axis = 0; axis < 2; ++axis) {
             const double cells = std::clamp(std::ceil(size[axis] / spacing - 1e-3), 1.0, 65535.0);
             count_[axis] = static_cast<std::size_t>(cells);

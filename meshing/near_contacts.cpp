@@ -1,5 +1,6 @@
 #include "meshing/near_contacts.h"
 
+#include "core/box.h"
 #include "core/parallel.h"
 #include "meshing/contact_strips.h"
 #include "meshing/plane_frame.h"
@@ -78,11 +79,9 @@ std::vector<Chosen> choose(const Scene& scene, const std::vector<Outline>& outli
 /// The edges that matter for a polygon, in its plane.
 std::vector<HoveringEdge> edgesInPlane(const PlaneFrame& frame, std::span<const glm::dvec2> border,
                                        const std::vector<Chosen>& chosen, double length) {
-    glm::dvec2 lower = border[0], upper = border[0];
-    for (const glm::dvec2& p : border) {
-        lower = glm::min(lower, p);
-        upper = glm::max(upper, p);
-    }
+    Box<glm::dvec2> near;
+    for (const glm::dvec2& p : border) near.add(p);
+    const auto [lower, upper] = near;
     std::vector<HoveringEdge> edges;
     for (const auto& [outline, levels] : chosen) {
         for (const OutlineEdge& edge : outline->edges) {

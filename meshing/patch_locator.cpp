@@ -1,12 +1,12 @@
 #include "meshing/patch_locator.h"
 
+#include "core/box.h"
 #include "meshing/plane_frame.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -119,14 +119,12 @@ PatchLocator locatePatches(const Scene& scene, const Polygon& polygon,
                            std::span<const glm::vec3> positions) {
     const PlaneFrame frame = planeFrame(scene, polygon);
     std::array<glm::dvec2, 4> p{};
-    glm::dvec2 lower(std::numeric_limits<double>::max());
-    glm::dvec2 upper(std::numeric_limits<double>::lowest());
+    Box<glm::dvec2> box;
     for (int k = 0; k < polygon.size(); ++k) {
         p[static_cast<std::size_t>(k)] = frame.project(corner(scene, polygon, k));
-        lower = glm::min(lower, p[static_cast<std::size_t>(k)]);
-        upper = glm::max(upper, p[static_cast<std::size_t>(k)]);
+        box.add(p[static_cast<std::size_t>(k)]);
     }
-    const glm::dvec2 size = glm::max(upper - lower, glm::dvec2(1e-30));
+    const glm::dvec2 lower = box.lower, size = glm::max(box.size(), glm::dvec2(1e-30));
     const double cells = kCellsPerPatch * static_cast<double>(corners.size());
     const double cellSize = std::sqrt(size.x * size.y / cells);
     const auto cellCount = [&](double extent) {

@@ -1,5 +1,6 @@
 #include "solver/emitter_tree.h"
 
+#include "core/box.h"
 #include "meshing/patch_offset.h"
 
 #include <glm/common.hpp>
@@ -181,15 +182,13 @@ std::uint32_t EmitterTree::build(std::span<std::uint32_t> list) {
         return static_cast<std::uint32_t>(nodes_.size() - 1);
     }
     // In halves, by place or by where they face, whatever differs most.
-    glm::dvec3 lower(1e300), upper(-1e300), lowerNormal(1.0), upperNormal(-1.0);
+    Box<glm::dvec3> centroids, normals;
     for (const std::uint32_t t : list) {
-        lower = glm::min(lower, triangles_[t].centroid());
-        upper = glm::max(upper, triangles_[t].centroid());
-        lowerNormal = glm::min(lowerNormal, triangles_[t].normal);
-        upperNormal = glm::max(upperNormal, triangles_[t].normal);
+        centroids.add(triangles_[t].centroid());
+        normals.add(triangles_[t].normal);
     }
-    const glm::dvec3 extent = upper - lower;
-    const glm::dvec3 facing = 0.5 * glm::length(extent) * (upperNormal - lowerNormal);
+    const glm::dvec3 extent = centroids.size();
+    const glm::dvec3 facing = 0.5 * glm::length(extent) * normals.size();
     int axis = 0;
     double widest = -1.0;
     for (int k = 0; k < 6; ++k) {

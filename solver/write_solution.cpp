@@ -1,4 +1,6 @@
 #include "core/error.h"
+
+#include "core/box.h"
 #include "core/text.h"
 #include "core/whole_file.h"
 #include "scene/gltf/writer.h"
@@ -8,7 +10,6 @@
 #include <glm/common.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace lambert {
 
@@ -82,12 +83,9 @@ private:
     std::size_t addPositions() {
         const std::vector<glm::vec3>& positions = record_.mesh.positions;
         const std::size_t index = addColours(positions, "position", GltfWriter::Target::Vertices);
-        glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
-        for (const glm::vec3& p : positions) {
-            lower = glm::min(lower, p);
-            upper = glm::max(upper, p);
-        }
-        writer_.setBounds(index, lower, upper);
+        Box<glm::vec3> box;
+        for (const glm::vec3& p : positions) box.add(p);
+        writer_.setBounds(index, box.lower, box.upper);
         return index;
     }
 

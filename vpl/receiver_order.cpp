@@ -1,5 +1,7 @@
 #include "vpl/receiver_order.h"
 
+#include "core/box.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -32,16 +34,13 @@ std::uint64_t facing(const glm::vec3& normal) {
 } // namespace
 
 std::vector<std::uint32_t> receiverOrder(std::span<const Receiver> receivers) {
-    glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
-    for (const Receiver& receiver : receivers) {
-        lower = glm::min(lower, receiver.position);
-        upper = glm::max(upper, receiver.position);
-    }
-    const glm::vec3 size = upper - lower;
+    Box<glm::vec3> box;
+    for (const Receiver& receiver : receivers) box.add(receiver.position);
+    const glm::vec3 size = box.size();
     const float longest = std::max({size.x, size.y, size.z, std::numeric_limits<float>::min()});
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(receivers.size());
     for (std::uint32_t i = 0; i < keys.size(); ++i) {
-        const glm::vec3 cell = ((1 << kBits) - 1) / longest * (receivers[i].position - lower);
+        const glm::vec3 cell = ((1 << kBits) - 1) / longest * (receivers[i].position - box.lower);
         std::uint64_t key = facing(receivers[i].normal) << (3 * kBits);
         for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
         keys[i] = {key, i};

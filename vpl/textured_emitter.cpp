@@ -1,5 +1,6 @@
 #include "vpl/textured_emitter.h"
 
+#include "core/box.h"
 #include "scene/polygon_points.h"
 
 #include <glm/common.hpp>
@@ -19,12 +20,9 @@ namespace {
 int cellsAlongAxis(const Scene& scene, const Polygon& polygon, const SurfaceSide& side, int mostCells) {
     const Texture& texture = *scene.textures[scene.materials[side.material].emissionTexture.texture];
     const auto& uv = scene.surfaces[side.surface].emissionUv;
-    glm::vec2 lower = uv[0], upper = uv[0];
-    for (std::size_t k = 1; k < static_cast<std::size_t>(polygon.size()); ++k) {
-        lower = glm::min(lower, uv[k]);
-        upper = glm::max(upper, uv[k]);
-    }
-    const glm::vec2 texels = (upper - lower) * glm::vec2(texture.width(), texture.height());
+    Box<glm::vec2> box;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size()); ++k) box.add(uv[k]);
+    const glm::vec2 texels = box.size() * glm::vec2(texture.width(), texture.height());
     const float most = std::min(std::max(texels.x, texels.y), static_cast<float>(mostCells));
     return std::min(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(std::ceil(most), 1.0F)))), mostCells);
 }
