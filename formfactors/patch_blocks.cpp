@@ -2,6 +2,7 @@
 
 #include "core/box.h"
 #include "core/vector_clones.h"
+#include "formfactors/patch_shape.h"
 #include "formfactors/quadrature.h"
 
 #include <glm/geometric.hpp>
@@ -29,12 +30,6 @@ constexpr float kSmallest = 1e-12F;
 /// Squared sine of the angle between planes that count as parallel: faces that meet so see less than 1e-5 of each other.
 constexpr float kRoundedSine = 1e-5F;
 
-std::vector<glm::dvec3> cornersOf(const PatchMesh& mesh, std::size_t patch) {
-    std::vector<glm::dvec3> corners;
-    for (int k = 0; k < mesh.cornerCount(patch); ++k) corners.emplace_back(mesh.position(patch, k));
-    return corners;
-}
-
 float radiusOf(const PatchMesh& mesh, std::size_t patch) {
     float radius = 0.0F;
     for (int k = 0; k < mesh.cornerCount(patch); ++k)
@@ -44,7 +39,7 @@ float radiusOf(const PatchMesh& mesh, std::size_t patch) {
 
 std::vector<WeightedPoint> gaussPoints(const PatchMesh& mesh, std::size_t patch) {
     std::vector<WeightedPoint> points;
-    appendGaussPoints(cornersOf(mesh, patch), 2, points);
+    appendGaussPoints(polygonOf(mesh, patch).points(), 2, points);
     return points;
 }
 

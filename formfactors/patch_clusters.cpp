@@ -2,6 +2,7 @@
 
 #include "core/box.h"
 #include "formfactors/coplanar_contacts.h"
+#include "formfactors/patch_shape.h"
 #include "formfactors/quadrature.h"
 
 #include <algorithm>
@@ -41,9 +42,8 @@ PatchClusters::PatchClusters(const Scene& scene, const PatchMesh& mesh, const Oc
     std::vector<glm::dvec3> corners;
     std::vector<std::uint32_t> occluderOf; // per target
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-        corners.clear();
-        for (int k = 0; k < mesh.cornerCount(i); ++k) corners.emplace_back(mesh.position(i, k));
-        Target& target = targets_.emplace_back(makeTarget(corners, glm::normalize(glm::dvec3(mesh.normal[i]))));
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(mesh.normal[i]));
+        Target& target = targets_.emplace_back(makeTarget(polygonOf(mesh, i).points(), normal));
         target.patch = static_cast<std::uint32_t>(i);
         target.blackBack = scene.polygons[mesh.polygon[i]].backMaterial == kNone;
         occluderOf.push_back(occluders.ofPolygon[mesh.polygon[i]]);

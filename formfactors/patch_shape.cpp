@@ -18,4 +18,10 @@ PatchShape::PatchShape(const RayCaster& rays, const PatchMesh& mesh, std::size_t
     perRest = firstShare < 1.0F ? 1.0F / (1.0F - firstShare) : 0.0F;
 }
 
+ConvexPolygon polygonOf(const PatchMesh& mesh, std::size_t patch) {
+    ConvexPolygon polygon;
+    for (int k = 0; k < mesh.cornerCount(patch); ++k) polygon.add(glm::dvec3(mesh.position(patch, k)));
+    return polygon;
+}
+
 } // namespace lambert

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formfactors/convex_polygon.h"
 #include "meshing/patch_mesh.h"
 #include "scene/rays/ray_caster.h"
 
@@ -22,5 +23,7 @@ struct PatchShape {
     PatchShape(const glm::vec3& point, const glm::vec3& unitNormal)
         : corner(point), edge(0.0F), diagonal(0.0F), across(0.0F), normal(unitNormal) {}
 };
+
+ConvexPolygon polygonOf(const PatchMesh& mesh, std::size_t patch);
 
 } // namespace lambert

@@ -35,12 +35,6 @@ constexpr std::uint32_t kMostRaysPerPair = 1U << 20;
 constexpr std::uint32_t kRunLength = 16;  ///< neighbouring pairs that are judged together
 constexpr std::uint32_t kRaysToJudge = 3; ///< per pair, at least
 
-ConvexPolygon polygonOf(const PatchMesh& mesh, std::size_t patch) {
-    ConvexPolygon polygon;
-    for (int k = 0; k < mesh.cornerCount(patch); ++k) polygon.add(glm::dvec3(mesh.position(patch, k)));
-    return polygon;
-}
-
 Plane planeOf(const PatchMesh& mesh, std::size_t patch) {
     // Of the corners in double: the normal is rounded to single precision.
     const glm::dvec3 areaVector = polygonAreaVector(polygonOf(mesh, patch).points());
