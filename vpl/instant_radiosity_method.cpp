@@ -1,6 +1,5 @@
 #include "vpl/instant_radiosity_method.h"
 
-#include "core/error.h"
 #include "vpl/recovery.h"
 
 #include <fmt/format.h>
@@ -40,9 +39,7 @@ std::vector<VirtualPointLight> withoutIndirectShadows(std::vector<VirtualPointLi
 } // namespace
 
 InstantRadiosityMethod::InstantRadiosityMethod(const InstantRadiosityChoice& choice) : choice_(choice) {
-    if (!(choice.bound > 0.0))
-        throw UsageError(
-            fmt::format("bound of the geometric term: found {}, allowed is what is above 0", choice.bound));
+    checkGather({.bound = choice.bound});
 }
 
 bool InstantRadiosityMethod::clamps() const { return std::isfinite(choice_.bound); }

@@ -35,6 +35,19 @@ glm::dvec3 reflectedSky(const RayCaster& rays, const Receiver& receiver, std::ui
     return scale * sum / static_cast<double>(count);
 }
 
+template <typename Light>
+std::vector<glm::dvec3> atEach(std::span<const Receiver> receivers, const char* title, Progress& progress,
+                               const Light& light) {
+    std::vector<glm::dvec3> result(receivers.size());
+    progress.begin(title, receivers.size());
+    parallelFor(receivers.size(), 64, [&](std::size_t begin, std::size_t end, int) {
+        for (std::size_t i = begin; i < end; ++i) result[i] = light(receivers[i], static_cast<std::uint32_t>(i));
+        progress.advance(end - begin);
+    });
+    progress.end();
+    return result;
+}
+
 } // namespace
 
 std::vector<glm::dvec3> skyLight(const RayCaster& rays, std::span<const Receiver> receivers, std::uint32_t skyRays,
@@ -42,31 +55,18 @@ std::vector<glm::dvec3> skyLight(const RayCaster& rays, std::span<const Receiver
     const LightSources sky{{}, rays.scene().environment.get()};
     if (sky.empty()) return {};
     const DirectLight light(rays, {.skyRays = skyRays, .seed = seed});
-    std::vector<glm::dvec3> irradiance(receivers.size());
-    progress.begin("sky light", receivers.size());
-    parallelFor(receivers.size(), 64, [&](std::size_t begin, std::size_t end, int) {
-        for (std::size_t i = begin; i < end; ++i)
-            irradiance[i] =
-                light.irradiance(receivers[i].position, receivers[i].normal, static_cast<std::uint32_t>(i), sky);
-        progress.advance(end - begin);
+    return atEach(receivers, "sky light", progress, [&](const Receiver& receiver, std::uint32_t index) {
+        return light.irradiance(receiver.position, receiver.normal, index, sky);
     });
-    progress.end();
-    return irradiance;
 }
 
 std::vector<glm::dvec3> glossySkyLight(const RayCaster& rays, std::span<const Receiver> receivers,
                                        std::uint32_t skyRays, std::uint64_t seed, Progress& progress) {
     const Environment* const sky = rays.scene().environment.get();
     if (sky == nullptr || sky->isDark() || !anyGlossy(receivers)) return {};
-    std::vector<glm::dvec3> radiance(receivers.size());
-    progress.begin("reflected sky", receivers.size());
-    parallelFor(receivers.size(), 64, [&](std::size_t begin, std::size_t end, int) {
-        for (std::size_t i = begin; i < end; ++i)
-            radiance[i] = reflectedSky(rays, receivers[i], static_cast<std::uint32_t>(i), skyRays, seed);
-        progress.advance(end - begin);
+    return atEach(receivers, "reflected sky", progress, [&](const Receiver& receiver, std::uint32_t index) {
+        return reflectedSky(rays, receiver, index, skyRays, seed);
     });
-    progress.end();
-    return radiance;
 }
 
 } // namespace lambert
