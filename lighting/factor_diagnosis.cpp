@@ -25,9 +25,6 @@ std::string anyOf(const std::vector<std::string>& ways) {
 std::string causeAndRemedy(const std::optional<TransportPlan>& plan, bool bySolver) {
     std::string cause;
     std::vector<std::string> ways;
-    const auto computedBetter = [&] {
-        if (methodByName("auto")) ways.emplace_back("--method auto");
-    };
     if (!plan) {
         cause = "the matrix of the file is not reciprocal";
         ways.emplace_back("computing it anew");
@@ -35,13 +32,14 @@ std::string causeAndRemedy(const std::optional<TransportPlan>& plan, bool bySolv
         const TransportOptions& o = plan->options;
         switch (o.method) {
         case TransportMethod::Auto:
+        case TransportMethod::ClosedForm:
             cause = "patches lie partly inside objects, or their hidden parts are not resolved";
             ways.emplace_back("a smaller --form-factor-error");
-            ways.emplace_back("a higher --quality");
+            if (o.method == TransportMethod::Auto) ways.emplace_back("a higher --quality");
             break;
         case TransportMethod::Hemicube:
         case TransportMethod::Hemisphere:
-            computedBetter();
+            ways.emplace_back("--method auto");
             cause = fmt::format("{} of a patch, {} pixels wide, misjudge{} what is near or small",
                                 o.perPatch == 1 ? "one view" : fmt::format("{} views", o.perPatch),
                                 o.resolution.value_or(0), o.perPatch == 1 ? "s" : "");
@@ -49,14 +47,10 @@ std::string causeAndRemedy(const std::optional<TransportPlan>& plan, bool bySolv
             break;
         case TransportMethod::LocalLines:
         case TransportMethod::GlobalLines:
-            computedBetter();
+            ways.emplace_back("--method auto");
             cause = fmt::format("{} lines {} are too few", o.lines.value_or(0),
                                 o.method == TransportMethod::LocalLines ? "per patch" : "for so many patches");
             ways.emplace_back("more --lines");
-            break;
-        case TransportMethod::ClosedForm:
-            cause = "patches lie partly inside objects, or their hidden parts are not resolved";
-            ways.emplace_back("a smaller --form-factor-error");
             break;
         }
     }

@@ -73,7 +73,6 @@ double predictPasses(double reflected, const SolverOptions& options) {
 
 } // namespace
 
-/// The k-th of indices below `count` that are spread evenly however many of them there are: multiples of the golden ratio, modulo 1.
 std::size_t spreadIndex(std::size_t k, std::size_t count) {
     const double at = 0.6180339887498949 * static_cast<double>(k);
     return static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(count));
