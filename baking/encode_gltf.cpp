@@ -6,7 +6,6 @@
 #include "scene/gltf/writer.h"
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace lambert {

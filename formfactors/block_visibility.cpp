@@ -4,13 +4,10 @@
 #include "core/parallel.h"
 #include "formfactors/closed_form.h"
 
-#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace lambert {

@@ -4,7 +4,6 @@
 #include "formfactors/closed_form.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace lambert {

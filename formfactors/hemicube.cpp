@@ -7,10 +7,7 @@
 #include "formfactors/hit_sum.h"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <optional>
 

@@ -4,7 +4,6 @@
 #include "formfactors/gauss_exchange.h"
 #include "formfactors/quadrature.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

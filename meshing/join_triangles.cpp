@@ -2,8 +2,6 @@
 
 #include "meshing/pair_triangles.h"
 
-#include <glm/common.hpp>
-
 #include <algorithm>
 #include <array>
 #include <utility>

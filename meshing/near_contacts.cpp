@@ -8,14 +8,11 @@
 #include "meshing/weld.h"
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
-#include <tuple>
 
 namespace lambert {
 

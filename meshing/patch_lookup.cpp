@@ -3,8 +3,6 @@
 #include "core/vector_clones.h"
 #include "meshing/plane_frame.h"
 
-#include <glm/common.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

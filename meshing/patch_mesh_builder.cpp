@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 namespace lambert {

@@ -2,8 +2,6 @@
 
 #include "meshing/plane_frame.h"
 
-#include <cmath>
-
 namespace lambert {
 
 namespace {

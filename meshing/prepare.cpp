@@ -8,8 +8,6 @@
 #include "meshing/weld_polygon.h"
 #include "scene/surface.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <array>
 #include <tuple>

@@ -1,7 +1,6 @@
 #include "meshing/weld.h"
 
 #include <boost/functional/hash.hpp>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <array>

@@ -3,7 +3,6 @@
 #include "core/box.h"
 #include "meshing/patch_offset.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

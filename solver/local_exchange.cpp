@@ -4,8 +4,6 @@
 #include "solver/ordered_sum.h"
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 
 namespace lambert {
 

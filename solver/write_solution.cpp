@@ -7,7 +7,6 @@
 #include "solver/solution_file.h"
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
