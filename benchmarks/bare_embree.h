@@ -7,6 +7,14 @@
 
 namespace lambert {
 
+/// Calls `f` with a null pointer to Embree's packet of that many rays, whose type is what `f` is to know.
+template <typename F>
+auto withPacketOf(PacketWidth width, F f) {
+    if (width == PacketWidth::Sixteen) return f(static_cast<RTCRayHit16*>(nullptr));
+    if (width == PacketWidth::Eight) return f(static_cast<RTCRayHit8*>(nullptr));
+    return f(static_cast<RTCRayHit4*>(nullptr));
+}
+
 /// A scene as Embree alone sees it, to compare with.
 class BareEmbree {
 public:
@@ -43,6 +51,7 @@ public:
     BareEmbree& operator=(const BareEmbree&) = delete;
 
     RTCScene handle() const { return scene_; }
+    PacketWidth width() const { return nativeWidth(device_); }
 
 private:
     RTCDevice device_;

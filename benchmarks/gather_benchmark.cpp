@@ -1,5 +1,5 @@
-/// Gathering from 1024 virtual point lights at what the pixels of a 640 × 480 picture show, against bare rtcOccluded16 of the
-/// same shadow rays; in turns, on one thread.
+/// Gathering from 1024 virtual point lights at what the pixels of a 640 × 480 picture show, against bare Embree with the
+/// same shadow rays in packets of the processor's own width; in turns, on one thread.
 ///
 /// "Bare" gets its packets from memory, full ones in the order in which gathering traces them, and throws the answers away;
 /// gathering also sorts receivers, computes geometric terms, packs the rays and adds up the light. One turn of `gather` takes every
@@ -49,9 +49,13 @@ std::vector<VirtualPointLight> lightsOf(const BenchmarkScene& scene) {
     return lights;
 }
 
-/// The shadow rays of a block of receivers as Embree takes them.
-std::vector<RTCRay16> bareRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers) {
-    std::vector<RTCRay16> packets;
+template <typename Rays>
+constexpr int kLanes = sizeof(Rays::id) / sizeof(unsigned);
+
+/// The shadow rays of a block of receivers as Embree takes them, in packets of type Rays.
+template <typename Rays>
+std::vector<Rays> bareRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers) {
+    std::vector<Rays> packets;
     for (const VirtualPointLight& light : lights) {
         int lane = 0;
         const glm::vec3 origin = light.position + light.lift * light.normal;
@@ -61,7 +65,7 @@ std::vector<RTCRay16> bareRays(const std::vector<VirtualPointLight>& lights, std
             if (!(glm::dot(way, light.normal) > 1e-5F * length) || !(glm::dot(way, receiver.normal) < -1e-5F * length))
                 continue;
             if (lane == 0) packets.emplace_back();
-            RTCRay16& rays = packets.back();
+            Rays& rays = packets.back();
             const glm::vec3 direction = receiver.position + receiver.lift * receiver.normal - origin;
             rays.org_x[lane] = origin.x;
             rays.org_y[lane] = origin.y;
@@ -72,19 +76,20 @@ std::vector<RTCRay16> bareRays(const std::vector<VirtualPointLight>& lights, std
             rays.tfar[lane] = 1.0F;
             rays.mask[lane] = ~0U;
             rays.id[lane] = 1; // a ray
-            lane = (lane + 1) % 16;
+            lane = (lane + 1) % kLanes<Rays>;
         }
     }
     return packets;
 }
 
-std::size_t trace(RTCScene scene, std::vector<RTCRay16>& packets) {
+template <typename Rays>
+std::size_t trace(RTCScene scene, std::vector<Rays>& packets) {
     QueryContext context;
     beginQuery(context);
     std::size_t rays = 0;
-    for (RTCRay16& packet : packets) {
-        alignas(64) int valid[16];
-        for (int lane = 0; lane < 16; ++lane) {
+    for (Rays& packet : packets) {
+        alignas(64) int valid[kLanes<Rays>];
+        for (int lane = 0; lane < kLanes<Rays>; ++lane) {
             valid[lane] = packet.id[lane] != 0 ? -1 : 0;
             rays += packet.id[lane];
         }
@@ -108,10 +113,12 @@ void compareGather(benchmark::State& state, const BenchmarkScene& scene, std::si
         for (std::size_t first = turn++ % every * kBlock; first < all.size(); first += every * kBlock) {
             std::vector<Receiver> block;
             for (std::size_t i = first; i < std::min(first + kBlock, all.size()); ++i) block.push_back(all[order[i]]);
-            std::vector<RTCRay16> packets = bareRays(lights, block);
-            CpuStopwatch watch;
-            rays += static_cast<double>(trace(bare.handle(), packets));
-            bareSeconds += watch.lap();
+            withPacketOf(bare.width(), [&]<typename RayHits>(RayHits*) {
+                auto packets = bareRays<decltype(RayHits::ray)>(lights, block);
+                CpuStopwatch watch;
+                rays += static_cast<double>(trace(bare.handle(), packets));
+                bareSeconds += watch.lap();
+            });
             some.insert(some.end(), block.begin(), block.end());
         }
         CpuStopwatch watch;
@@ -124,6 +131,7 @@ void compareGather(benchmark::State& state, const BenchmarkScene& scene, std::si
         state.counters["bare_seconds"] = bareSeconds;
         state.counters["our_seconds"] = ourSeconds;
     }
+    state.counters["bare_width"] = static_cast<int>(bare.width());
     state.counters["receivers"] = static_cast<double>(all.size());
     comparison.report(state);
 }

@@ -1,4 +1,4 @@
-/// Hemicube rows against bare rtcIntersect16 on the same rays, in turns, on one thread.
+/// Hemicube rows against bare Embree on the same rays in packets of the processor's own width, in turns, on one thread.
 ///
 /// "Bare" gets its directions from memory and throws the hits away; a hemicube row also makes the directions, finds the
 /// patches and sums the delta form factors.
@@ -23,25 +23,38 @@ namespace {
 
 constexpr int kResolution = 128;
 
-/// Traces the packets; returns how many rays hit.
-std::size_t trace(RTCScene scene, const glm::vec3& origin, const std::vector<RayPacket>& packets,
-                  PacketWidth width = PacketWidth::Sixteen) {
+/// Traces the rays of the packets as RayHits; returns how many hit.
+template <typename RayHits>
+std::size_t traceAs(RTCScene scene, const glm::vec3& origin, const std::vector<RayPacket>& packets) {
+    constexpr int kLanes = sizeof(RayHits::hit.geomID) / sizeof(unsigned);
     QueryContext context;
     beginQuery(context);
-    alignas(64) RTCRayHit16 rays;
+    alignas(64) RayHits rays;
     std::size_t hits = 0;
     for (const RayPacket& packet : packets) {
-        beginRays(packet.active, rays);
-        std::fill_n(rays.ray.org_x, 16, origin.x);
-        std::fill_n(rays.ray.org_y, 16, origin.y);
-        std::fill_n(rays.ray.org_z, 16, origin.z);
-        std::copy_n(packet.directionX, 16, rays.ray.dir_x);
-        std::copy_n(packet.directionY, 16, rays.ray.dir_y);
-        std::copy_n(packet.directionZ, 16, rays.ray.dir_z);
-        intersectPacket(width, packet.active, scene, context, Likeness::Coherent, rays);
-        for (int lane = 0; lane < 16; ++lane) hits += rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
+        for (int first = 0; first < 16; first += kLanes) {
+            std::fill_n(rays.ray.org_x, kLanes, origin.x);
+            std::fill_n(rays.ray.org_y, kLanes, origin.y);
+            std::fill_n(rays.ray.org_z, kLanes, origin.z);
+            std::copy_n(packet.directionX + first, kLanes, rays.ray.dir_x);
+            std::copy_n(packet.directionY + first, kLanes, rays.ray.dir_y);
+            std::copy_n(packet.directionZ + first, kLanes, rays.ray.dir_z);
+            for (int lane = 0; lane < kLanes; ++lane)
+                rays.ray.tnear[lane] = packet.active[first + lane] != 0 ? 0.0F : std::numeric_limits<float>::infinity();
+            std::fill_n(rays.ray.tfar, kLanes, 1e30F);
+            std::fill_n(rays.ray.time, kLanes, 0.0F);
+            std::fill_n(rays.ray.mask, kLanes, ~0U);
+            std::fill_n(rays.ray.flags, kLanes, 0U);
+            std::fill_n(rays.hit.geomID, kLanes, RTC_INVALID_GEOMETRY_ID);
+            intersect(packet.active + first, scene, context, Likeness::Coherent, rays);
+            for (const unsigned geometry : rays.hit.geomID) hits += geometry != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
+        }
     }
     return hits;
+}
+
+std::size_t trace(const BareEmbree& bare, const glm::vec3& origin, const std::vector<RayPacket>& packets, PacketWidth width) {
+    return withPacketOf(width, [&]<typename RayHits>(RayHits*) { return traceAs<RayHits>(bare.handle(), origin, packets); });
 }
 
 std::vector<RayPacket> packetsOf(const Hemicube& hemicube, const PatchMesh& mesh, std::uint32_t patch) {
@@ -61,10 +74,11 @@ void compareHemicube(benchmark::State& state, const BenchmarkScene& scene) {
     compareRows(
         state, hemicube, [&](std::uint32_t patch) { return packetsOf(hemicube, scene.mesh, patch); },
         [&](std::uint32_t patch, const std::vector<RayPacket>& packets) {
-            hits += trace(bare.handle(), hemicube.viewpoint(patch).origin, packets);
+            hits += trace(bare, hemicube.viewpoint(patch).origin, packets, bare.width());
             traced += hemicube.raysPerRow();
         });
     state.counters["hit"] = static_cast<double>(hits) / static_cast<double>(traced);
+    state.counters["bare_width"] = static_cast<int>(bare.width());
 }
 
 /// Millions of rays a second for each width, the median of nine turns.
@@ -81,7 +95,7 @@ void compareWidths(benchmark::State& state, const BenchmarkScene& scene) {
             const std::vector<RayPacket> packets = packetsOf(hemicube, scene.mesh, patch);
             for (std::size_t w = 0; w < kWidths.size(); ++w) {
                 CpuStopwatch watch;
-                benchmark::DoNotOptimize(trace(bare.handle(), hemicube.viewpoint(patch).origin, packets, kWidths[w]));
+                benchmark::DoNotOptimize(trace(bare, hemicube.viewpoint(patch).origin, packets, kWidths[w]));
                 seconds[w] += watch.lap();
             }
         }
@@ -116,7 +130,7 @@ void largeMatrix(benchmark::State& state) {
             const auto patch = static_cast<std::uint32_t>(k);
             const std::vector<RayPacket> packets = packetsOf(hemicube, scene.mesh, patch);
             CpuStopwatch watch;
-            hits += trace(bare.handle(), hemicube.viewpoint(patch).origin, packets);
+            hits += trace(bare, hemicube.viewpoint(patch).origin, packets, bare.width());
             seconds[static_cast<std::size_t>(worker)] += watch.lap();
         }
     });

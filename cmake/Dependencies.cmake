@@ -1,4 +1,4 @@
-# Every library comes from Debian 12; scripts/packages.txt is the list of packages.
+# Every library comes from Debian 12 or 13; scripts/packages.txt is the list of packages.
 find_package(Threads REQUIRED)
 find_package(glm CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
