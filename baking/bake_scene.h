@@ -11,7 +11,7 @@ namespace lambert {
 /// Everything between a scene and the light at its vertices.
 struct BakeOptions {
     SolveOptions solve;
-    ReconstructionOptions reconstruction;
+    ReconstructionOptions reconstruction{};
     bool perLight = false; //!< each group of lights on its own as well
 };
 

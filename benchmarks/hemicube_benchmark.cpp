@@ -53,8 +53,10 @@ std::size_t traceAs(RTCScene scene, const glm::vec3& origin, const std::vector<R
     return hits;
 }
 
-std::size_t trace(const BareEmbree& bare, const glm::vec3& origin, const std::vector<RayPacket>& packets, PacketWidth width) {
-    return withPacketOf(width, [&]<typename RayHits>(RayHits*) { return traceAs<RayHits>(bare.handle(), origin, packets); });
+std::size_t trace(const BareEmbree& bare, const glm::vec3& origin, const std::vector<RayPacket>& packets,
+                  PacketWidth width) {
+    return withPacketOf(width,
+                        [&]<typename RayHits>(RayHits*) { return traceAs<RayHits>(bare.handle(), origin, packets); });
 }
 
 std::vector<RayPacket> packetsOf(const Hemicube& hemicube, const PatchMesh& mesh, std::uint32_t patch) {

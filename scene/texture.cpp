@@ -29,7 +29,7 @@ const std::array<float, 256>& linearTable(TexelEncoding encoding) {
     return encoding == TexelEncoding::Srgb ? tables.first : tables.second;
 }
 
-std::size_t texelCount(int width, int height) {
+[[maybe_unused]] std::size_t texelCount(int width, int height) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 

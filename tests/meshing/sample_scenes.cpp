@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <random>
 
 namespace lambert {
@@ -116,7 +117,7 @@ std::vector<glm::vec2> randomConvexQuad(std::uint32_t seed) {
 }
 
 Scene dataScene(const std::string& file) {
-    return prepareScene(readScene(std::string(LAMBERT_DATA) + "/" + file).scene);
+    return prepareScene(readScene(std::filesystem::path(LAMBERT_DATA) / file).scene);
 }
 
 std::vector<SampleScene> sampleScenes() {
