@@ -20,21 +20,20 @@ namespace {
 
 int processorCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-std::atomic<int> configuredThreads{0};
+thread_local int configuredThreads = 0;
 
 } // namespace
 
-int threadCount() {
-    const int configured = configuredThreads;
-    return configured > 0 ? configured : processorCount();
-}
+int threadCount() { return configuredThreads > 0 ? configuredThreads : processorCount(); }
+
+ThreadCountScope::ThreadCountScope(int count) : before_(configuredThreads) { setThreadCount(count); }
 
 #ifndef LAMBERT_STD_THREADS
 
 void setThreadCount(int count) {
     configuredThreads = count;
     // More threads than processors are to be had only by raising oneTBB's own limit.
-    static std::unique_ptr<tbb::global_control> limit;
+    static thread_local std::unique_ptr<tbb::global_control> limit;
     limit.reset();
     if (count > processorCount())
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -4,6 +4,7 @@
 #include "baking/exposure.h"
 #include "baking/write_baked.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/progress.h"
 #include "lighting/quality.h"
 #include "scene/reading/changed_scene.h"
@@ -82,6 +83,7 @@ auto failing(const Work& work) {
 }
 
 SolveOptions optionsOf(const BakeSettings& settings) {
+    if (settings.threads < 0) throw UsageError(fmt::format("threads: {}: must be 0 or more", settings.threads));
     SolveOptions options = solveOptions(qualityOf(settings.quality), settings.seed);
     options.mesh.patches = settings.patches;
     return options;
@@ -135,6 +137,7 @@ Bake bake(const Scene& scene, const BakeSettings& settings) {
     return failing([&] {
         Told progress(settings.progress);
         BakeOptions options{.solve = optionsOf(settings)};
+        const ThreadCountScope threads(settings.threads);
         options.reconstruction.keepHidden = settings.patches == std::size_t{0}; // the caller's mesh
         return Bake(
             std::make_shared<Bake::Content>(Bake::Content{bakeScene(scene.content().read.scene, options, progress)}));
@@ -155,6 +158,7 @@ FormFactors formFactors(const Scene& scene, const BakeSettings& settings) {
     return failing([&] {
         Told progress(settings.progress);
         const SolveOptions options = optionsOf(settings);
+        const ThreadCountScope threads(settings.threads);
         const MeshedScene meshed = meshScene(scene.content().read.scene, options.mesh, progress);
         const FormFactorMatrix matrix =
             obtainMatrix(std::get<FormFactorLight>(options.method).formFactors, {}, meshed.mesh, *meshed.rays, progress)

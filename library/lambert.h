@@ -23,8 +23,7 @@
 /// - The same files, settings and version give the same bits, whatever the number of processors.
 /// - Errors are Failure: one line for the person who gave the file or the number, as the program `lambert` prints it. Nothing is
 ///   half-written then. Want of memory beyond what Lambert plans for is std::bad_alloc.
-/// - One call works at a time, on all processors; several threads may not call at once. Results are values: copies share what they
-///   hold, and may be read from any thread.
+/// - Several threads may call at once. Results are values: copies share what they hold, and may be read from any thread.
 namespace lambert::library {
 
 /// Why a call ended without a result.
@@ -73,6 +72,7 @@ struct BakeSettings {
     std::string quality = "normal";     //!< preview, normal or high
     std::optional<std::size_t> patches; //!< about so many; 0: one per polygon of the file; none: as the quality has it
     std::uint64_t seed = 1;
+    int threads = 0; //!< that work, the calling one included; 0: as many as there are processors
     OnProgress progress{};
 };
 

@@ -10,7 +10,8 @@ from pathlib import Path
 LAMBERT = os.environ["LAMBERT"]
 DATA = Path(os.environ["LAMBERT_DATA"])
 BUILD = Path(os.environ["LAMBERT_BUILD"])
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+HERE = Path(__file__).resolve().parent
+EXAMPLES = HERE.parents[1] / "examples"
 
 
 def run(*words, **options):
@@ -26,17 +27,17 @@ class Library(unittest.TestCase):
         done = run("cmake", "--install", BUILD, "--prefix", cls.root / "first")
         assert done.returncode == 0, done.stderr
         (cls.root / "first").rename(cls.root / "installed")  # the tree may be moved
-        cls.example = cls.built("outside", cls.root / "installed")
+        cls.example = cls.built(EXAMPLES, "outside", cls.root / "installed") / "bake_scene"
 
     @classmethod
-    def built(cls, name, prefix):
-        """The example, from a copy of its folder, against the library at `prefix`."""
-        shutil.copytree(EXAMPLES, cls.root / name)
+    def built(cls, source, name, prefix):
+        """What is built of a copy of a folder against the library at `prefix`."""
+        shutil.copytree(source, cls.root / name)
         for words in (("-S", cls.root / name, "-B", cls.root / name / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
                        "-DCMAKE_BUILD_TYPE=Debug"), ("--build", cls.root / name / "build")):
             done = run("cmake", *words)
             assert done.returncode == 0, done.stdout + done.stderr
-        return cls.root / name / "build" / "bake_scene"
+        return cls.root / name / "build"
 
     def expect_same_bytes(self, program, scene, extension):
         ours, theirs = self.root / "ours" / f"baked.{extension}", self.root / "theirs" / f"baked.{extension}"
@@ -64,7 +65,12 @@ class Library(unittest.TestCase):
                 self.assertNotIn(str(BUILD), run("readelf", "-d", self.root / "installed" / file).stdout, file)
 
     def test_is_found_in_the_build_too(self):
-        self.expect_same_bytes(self.built("in_build", BUILD), DATA / "tetrahedron.obj", "obj")
+        self.expect_same_bytes(self.built(EXAMPLES, "in_build", BUILD) / "bake_scene", DATA / "tetrahedron.obj", "obj")
+
+    def test_several_threads_may_bake_at_once(self):
+        done = run(self.built(HERE / "at_once", "at_once", self.root / "installed") / "at_once",
+                   DATA / "cornell_box.gltf", DATA / "textured_room.gltf", DATA / "table_room.gltf")
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_failures_are_one_line(self):
         done = run(self.example, self.root / "none.obj", self.root / "a.glb")
