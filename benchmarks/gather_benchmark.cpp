@@ -3,7 +3,7 @@
 ///
 /// "Bare" gets its packets from memory, full ones in the order in which gathering traces them, and throws the answers away;
 /// gathering also sorts receivers, computes geometric terms, packs the rays and adds up the light. One turn of `gather` takes every
-/// 16th block of neighbouring receivers, that of `gather_picture` all of them.
+/// 16th block of neighbouring receivers, that of `gather_picture` all of them; `shadows` leaves it at the shadow rays.
 
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
@@ -52,33 +52,69 @@ std::vector<VirtualPointLight> lightsOf(const BenchmarkScene& scene) {
 template <typename Rays>
 constexpr int kLanes = sizeof(Rays::id) / sizeof(unsigned);
 
-/// The shadow rays of a block of receivers as Embree takes them, in packets of type Rays.
-template <typename Rays>
-std::vector<Rays> bareRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers) {
-    std::vector<Rays> packets;
+/// Calls `add` with the origin and the way, of length 1, of each shadow ray of a block of receivers.
+template <typename Add>
+void visitRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers, Add add) {
     for (const VirtualPointLight& light : lights) {
-        int lane = 0;
         const glm::vec3 origin = light.position + light.lift * light.normal;
+        bool first = true;
         for (const Receiver& receiver : receivers) {
             const glm::vec3 way = receiver.position - light.position;
             const float length = glm::length(way);
             if (!(glm::dot(way, light.normal) > 1e-5F * length) || !(glm::dot(way, receiver.normal) < -1e-5F * length))
                 continue;
-            if (lane == 0) packets.emplace_back();
-            Rays& rays = packets.back();
-            const glm::vec3 direction = receiver.position + receiver.lift * receiver.normal - origin;
-            rays.org_x[lane] = origin.x;
-            rays.org_y[lane] = origin.y;
-            rays.org_z[lane] = origin.z;
-            rays.dir_x[lane] = direction.x;
-            rays.dir_y[lane] = direction.y;
-            rays.dir_z[lane] = direction.z;
-            rays.tfar[lane] = 1.0F;
-            rays.mask[lane] = ~0U;
-            rays.id[lane] = 1; // a ray
-            lane = (lane + 1) % kLanes<Rays>;
+            add(origin, receiver.position + receiver.lift * receiver.normal - origin, first);
+            first = false;
         }
     }
+}
+
+/// These rays as Embree takes them, in packets of type Rays with the rays of one light.
+template <typename Rays>
+std::vector<Rays> bareRays(const std::vector<VirtualPointLight>& lights, std::span<const Receiver> receivers) {
+    std::vector<Rays> packets;
+    int lane = 0;
+    visitRays(lights, receivers, [&](const glm::vec3& origin, const glm::vec3& direction, bool first) {
+        if (first || lane == kLanes<Rays>) {
+            packets.emplace_back();
+            lane = 0;
+        }
+        Rays& rays = packets.back();
+        rays.org_x[lane] = origin.x;
+        rays.org_y[lane] = origin.y;
+        rays.org_z[lane] = origin.z;
+        rays.dir_x[lane] = direction.x;
+        rays.dir_y[lane] = direction.y;
+        rays.dir_z[lane] = direction.z;
+        rays.tfar[lane] = 1.0F;
+        rays.mask[lane] = ~0U;
+        rays.id[lane] = 1; // a ray
+        ++lane;
+    });
+    return packets;
+}
+
+/// These rays as a RayCaster takes them.
+std::vector<ShadowPacket> shadowPackets(const std::vector<VirtualPointLight>& lights,
+                                        std::span<const Receiver> receivers) {
+    std::vector<ShadowPacket> packets;
+    int lane = 0;
+    visitRays(lights, receivers, [&](const glm::vec3& origin, const glm::vec3& direction, bool first) {
+        if (first || lane == ShadowPacket::kSize) {
+            packets.emplace_back();
+            lane = 0;
+        }
+        ShadowPacket& rays = packets.back();
+        rays.originX[lane] = origin.x;
+        rays.originY[lane] = origin.y;
+        rays.originZ[lane] = origin.z;
+        rays.directionX[lane] = direction.x;
+        rays.directionY[lane] = direction.y;
+        rays.directionZ[lane] = direction.z;
+        rays.maxDistance[lane] = 1.0F;
+        rays.active[lane] = -1;
+        ++lane;
+    });
     return packets;
 }
 
@@ -136,9 +172,39 @@ void compareGather(benchmark::State& state, const BenchmarkScene& scene, std::si
     comparison.report(state);
 }
 
+/// The same rays, of every 64th block, by the caster alone.
+void compareShadows(benchmark::State& state, const BenchmarkScene& scene) {
+    const BareEmbree bare(scene.scene);
+    const std::vector<Receiver> all = pixelReceivers(scene);
+    const std::vector<std::uint32_t> order = receiverOrder(all);
+    const std::vector<VirtualPointLight> lights = lightsOf(scene);
+    Comparison comparison;
+    for (auto _ : state) {
+        double bareSeconds = 0.0, ourSeconds = 0.0, rays = 0.0;
+        for (std::size_t first = 0; first < all.size(); first += 64 * kBlock) {
+            std::vector<Receiver> block;
+            for (std::size_t i = first; i < std::min(first + kBlock, all.size()); ++i) block.push_back(all[order[i]]);
+            withPacketOf(bare.width(), [&]<typename RayHits>(RayHits*) {
+                auto packets = bareRays<decltype(RayHits::ray)>(lights, block);
+                CpuStopwatch watch;
+                rays += static_cast<double>(trace(bare.handle(), packets));
+                bareSeconds += watch.lap();
+            });
+            std::vector<ShadowPacket> packets = shadowPackets(lights, block);
+            CpuStopwatch watch;
+            for (ShadowPacket& packet : packets) scene.rays.occluded(packet);
+            ourSeconds += watch.lap();
+        }
+        comparison.add(rays, bareSeconds, ourSeconds);
+    }
+    state.counters["bare_width"] = static_cast<int>(bare.width());
+    comparison.report(state);
+}
+
 const bool registered = [] {
     registerComparison("gather", 5,
                        [](benchmark::State& state, const BenchmarkScene& scene) { compareGather(state, scene, 16); });
+    registerComparison("shadows", 9, compareShadows);
     registerComparison("gather_picture", 1,
                        [](benchmark::State& state, const BenchmarkScene& scene) { compareGather(state, scene, 1); });
     return true;

@@ -3,7 +3,7 @@
 /// "Bare" gets its directions from memory and throws the hits away; a hemicube row also makes the directions, finds the
 /// patches and sums the delta form factors.
 ///
-/// "widths" traces the bare rays in packets of 16, 8 and 4: LAMBERT_EMBREE=isa=avx2 lambert_benchmarks --benchmark_filter=widths
+/// "hits" leaves it at the hits. "widths" traces the bare rays in packets of 16, 8 and 4: LAMBERT_EMBREE=isa=avx2 lambert_benchmarks --benchmark_filter=widths
 
 #include "benchmarks/bare_embree.h"
 #include "benchmarks/comparison.h"
@@ -83,6 +83,30 @@ void compareHemicube(benchmark::State& state, const BenchmarkScene& scene) {
     state.counters["bare_width"] = static_cast<int>(bare.width());
 }
 
+/// The same rays by the caster alone.
+void compareHits(benchmark::State& state, const BenchmarkScene& scene) {
+    const BareEmbree bare(scene.scene);
+    const Hemicube hemicube(scene.mesh, scene.rays, {.resolution = kResolution});
+    Comparison comparison;
+    for (auto _ : state) {
+        constexpr std::uint32_t kRows = 24;
+        double bareSeconds = 0.0, ourSeconds = 0.0;
+        for (std::uint32_t k = 0; k < kRows; ++k) {
+            const auto patch = static_cast<std::uint32_t>(k * scene.mesh.size() / kRows);
+            std::vector<RayPacket> packets = packetsOf(hemicube, scene.mesh, patch);
+            const glm::vec3 origin = hemicube.viewpoint(patch).origin;
+            CpuStopwatch watch;
+            benchmark::DoNotOptimize(trace(bare, origin, packets, bare.width()));
+            bareSeconds += watch.lap();
+            for (RayPacket& packet : packets) scene.rays.closest(origin, packet);
+            ourSeconds += watch.lap();
+        }
+        comparison.add(static_cast<double>(kRows * hemicube.raysPerRow()), bareSeconds, ourSeconds);
+    }
+    state.counters["bare_width"] = static_cast<int>(bare.width());
+    comparison.report(state);
+}
+
 /// Millions of rays a second for each width, the median of nine turns.
 void compareWidths(benchmark::State& state, const BenchmarkScene& scene) {
     const BareEmbree bare(scene.scene);
@@ -146,6 +170,7 @@ void largeMatrix(benchmark::State& state) {
 const bool registered = [] {
     benchmark::RegisterBenchmark("large_matrix", largeMatrix)->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
     registerComparison("hemicube", 9, compareHemicube);
+    registerComparison("hits", 9, compareHits);
     registerComparison("widths", 9, compareWidths);
     return true;
 }();
