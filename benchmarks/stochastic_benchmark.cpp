@@ -22,8 +22,8 @@ std::vector<Ray> someRays(const BenchmarkScene& scene, std::uint64_t seed) {
     const std::size_t step = std::max<std::size_t>(1, scene.mesh.size() * kRaysPerPatch / kBareRays);
     for (std::size_t i = 0; i < scene.mesh.size(); i += step) {
         batch.runs = {{static_cast<std::uint32_t>(i), 0, kRaysPerPatch}};
-        const std::vector<Ray> some = patchRays.rays(seed, batch);
-        rays.insert(rays.end(), some.begin(), some.end());
+        const std::size_t count = patchRays.make(seed, batch);
+        for (std::size_t k = 0; k < count; ++k) rays.push_back(batch.ray(k));
     }
     return shuffled(rays);
 }

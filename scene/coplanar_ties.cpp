@@ -16,7 +16,9 @@ namespace lambert {
 
 namespace {
 
-constexpr float kInPlane = 2e-6F; ///< of the scene's diagonal: as where scenes are prepared
+constexpr float kInPlane = 2e-6F;                ///< of the scene's diagonal: as where scenes are prepared
+constexpr float kGrazing = 0.05F;                ///< cosine to the normal below which a ray grazes
+constexpr float kReach = 1.0F + 1.0F / kGrazing; ///< of kInPlane: how far rays that do not graze go between planes
 
 bool liesOver(const Scene& scene, std::uint32_t a, std::uint32_t b) {
     return std::pair(emits(scene, {a, false}), a) > std::pair(emits(scene, {b, false}), b);
@@ -82,21 +84,28 @@ CoplanarTies::CoplanarTies(const Scene& scene) : scene_(scene) {
                 if (isHidden(scene, {polygon, back}, other, pair.sameFacing))
                     hidden.emplace_back(place({polygon, back}), other);
     if (hidden.empty()) return;
+    normals_.reserve(scene.polygons.size());
+    for (const Polygon& polygon : scene.polygons) normals_.push_back(glm::normalize(areaVector(scene, polygon)));
     std::sort(hidden.begin(), hidden.end());
     first_.assign(2 * scene.polygons.size() + 1, 0);
     for (const auto& [where, other] : hidden) {
         ++first_[where + 1];
-        others_.push_back(other);
+        others_.push_back({other, boundsOf(scene, scene.polygons[other]).grownBy(kReach * kInPlane * diagonal)});
     }
     for (std::size_t k = 0; k + 1 < first_.size(); ++k) first_[k + 1] += first_[k];
 }
 
-std::optional<SeenPolygon> CoplanarTies::seen(const PolygonSide& side, const glm::vec3& origin,
+std::optional<SeenPolygon> CoplanarTies::seen(const PolygonSide& side, const glm::vec3& point, const glm::vec3& origin,
                                               const glm::vec3& direction) const {
+    const float cosine = glm::dot(normals_[side.polygon], direction);
+    const bool grazes = cosine * cosine < kGrazing * kGrazing * glm::dot(direction, direction);
     boost::container::small_vector<PolygonSide, 4> sides;
     boost::container::small_vector<SeenPolygon, 4> met;
     for (std::uint32_t k = first_[place(side)]; k < first_[place(side) + 1]; ++k) {
-        const auto other = meetPolygon(scene_, others_[k], glm::dvec3(origin), glm::dvec3(direction), slack_);
+        const Bounds& reach = others_[k].reach;
+        if (!grazes && (glm::any(glm::lessThan(point, reach.lower)) || glm::any(glm::lessThan(reach.upper, point))))
+            continue;
+        const auto other = meetPolygon(scene_, others_[k].polygon, glm::dvec3(origin), glm::dvec3(direction), slack_);
         if (!other) continue;
         met.push_back(*other);
         sides.push_back({other->polygon, !other->front});

@@ -31,16 +31,24 @@ public:
     /// Whether others hide some of this side.
     bool any(const PolygonSide& side) const { return first_[place(side)] != first_[place(side) + 1]; }
 
-    /// What a ray sees where it meets a side; nothing if that.
-    std::optional<SeenPolygon> seen(const PolygonSide& side, const glm::vec3& origin, const glm::vec3& direction) const;
+    /// What a ray sees where it meets a side, at a point; nothing if that.
+    std::optional<SeenPolygon> seen(const PolygonSide& side, const glm::vec3& point, const glm::vec3& origin,
+                                    const glm::vec3& direction) const;
 
 private:
     static std::size_t place(const PolygonSide& side) { return 2 * std::size_t{side.polygon} + (side.back ? 1 : 0); }
 
+    /// A polygon that hides some of a side.
+    struct Other {
+        std::uint32_t polygon;
+        Bounds reach; ///< rays that do not graze meet it only from points of the side in here
+    };
+
     const Scene& scene_;
-    std::vector<std::uint32_t> first_;  ///< 2 #polygons + 1: of the front and the back of each, into others_; or empty
-    std::vector<std::uint32_t> others_; ///< polygons that hide some of the side
-    double slack_ = 0.0;                ///< metres: what is nearer to an edge lies within it
+    std::vector<std::uint32_t> first_; ///< 2 #polygons + 1: of the front and the back of each, into others_; or empty
+    std::vector<Other> others_;
+    std::vector<glm::vec3> normals_; ///< of length 1, of the polygons; or empty
+    double slack_ = 0.0;             ///< metres: what is nearer to an edge lies within it
 };
 
 } // namespace lambert

@@ -143,7 +143,8 @@ struct RayCaster::Impl {
             const PolygonSide side{packet.polygon[lane], packet.facing[lane] > 0.0F};
             if (side.polygon == kNone || !ties.any(side)) continue;
             const glm::vec3 direction(packet.directionX[lane], packet.directionY[lane], packet.directionZ[lane]);
-            const auto seen = ties.seen(side, originOf(lane), direction);
+            const auto seen = ties.seen(side, polygonPoint(scene, side.polygon, packet.u[lane], packet.v[lane]),
+                                        originOf(lane), direction);
             if (!seen) continue;
             packet.polygon[lane] = seen->polygon;
             packet.u[lane] = seen->u;
@@ -183,7 +184,8 @@ std::optional<Hit> RayCaster::closest(const Ray& ray) const {
         glm::dot(ray.direction, normal) < 0.0F && !isOccluder(impl_->scene, impl_->scene.polygons[hit.polygon]);
     const float distance = query.ray.tfar / impl_->embree.scale();
     if (const PolygonSide side{hit.polygon, !front}; impl_->ties.any() && impl_->ties.any(side))
-        if (const auto seen = impl_->ties.seen(side, ray.origin, ray.direction))
+        if (const auto seen = impl_->ties.seen(side, polygonPoint(impl_->scene, hit.polygon, hit.u, hit.v), ray.origin,
+                                               ray.direction))
             return Hit{seen->polygon, seen->u, seen->v, distance, seen->front};
     return Hit{hit.polygon, hit.u, hit.v, distance, front};
 }
