@@ -33,7 +33,7 @@ class Library(unittest.TestCase):
     def built(cls, source, name, prefix):
         """What is built of a copy of a folder against the library at `prefix`."""
         shutil.copytree(source, cls.root / name)
-        for words in (("-S", cls.root / name, "-B", cls.root / name / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
+        for words in (("-G", "Ninja", "-S", cls.root / name, "-B", cls.root / name / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
                        "-DCMAKE_BUILD_TYPE=Debug"), ("--build", cls.root / name / "build")):
             done = run("cmake", *words)
             assert done.returncode == 0, done.stdout + done.stderr
@@ -87,7 +87,7 @@ class Library(unittest.TestCase):
             "cmake_minimum_required(VERSION 3.25)\nproject(f CXX)\nfind_package(lambert REQUIRED)\n"
             f"add_executable(f {program})\ntarget_link_libraries(f PRIVATE lambert::lambert)\n")
         build = self.root / "factors" / "build"
-        for words in (("-S", build.parent, "-B", build, f"-DCMAKE_PREFIX_PATH={self.root / 'installed'}"), ("--build", build)):
+        for words in (("-G", "Ninja", "-S", build.parent, "-B", build, f"-DCMAKE_PREFIX_PATH={self.root / 'installed'}"), ("--build", build)):
             done = run("cmake", *words)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         done = run(build / "f", DATA / "cube6.obj")
