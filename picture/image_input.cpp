@@ -12,9 +12,6 @@
 #include <bit>
 #include <string_view>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 namespace lambert {
 
 namespace {
@@ -54,32 +51,6 @@ void check(const ImageHeader& header, const std::string& file, std::uint64_t mos
 
 } // namespace
 
-/// Bytes as a file that has a name but lies in memory: Debian's OpenImageIO reads JPEG only by name.
-class ImageInput::MemoryFile {
-public:
-    explicit MemoryFile(std::span<const std::uint8_t> bytes) : descriptor_(memfd_create("image", MFD_CLOEXEC)) {
-        while (descriptor_ >= 0 && !bytes.empty()) {
-            const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
-            if (written <= 0) break;
-            bytes = bytes.subspan(static_cast<std::size_t>(written));
-        }
-        if (descriptor_ >= 0 && bytes.empty()) return;
-        close();
-        throw SystemError("not enough memory for an image inside a scene");
-    }
-    ~MemoryFile() { close(); }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-
-    std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-
-private:
-    void close() const {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    int descriptor_;
-};
-
 ImageInput::ImageInput(const std::filesystem::path& path, std::uint64_t mostPixels) : file_(path.string()) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw InputError("no such file");
@@ -90,18 +61,14 @@ ImageInput::ImageInput(const std::filesystem::path& path, std::uint64_t mostPixe
 }
 
 ImageInput::ImageInput(std::span<const std::uint8_t> content, std::uint64_t mostPixels) {
-    const std::string_view start(reinterpret_cast<const char*>(content.data()), content.size());
-    const bool jpeg = start.starts_with("\xFF\xD8");
-    if (!jpeg && !start.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
+    const std::string_view bytes(reinterpret_cast<const char*>(content.data()), content.size());
+    const bool jpeg = bytes.starts_with("\xFF\xD8");
+    if (!jpeg && !bytes.starts_with("\x89PNG")) throw InputError("is neither PNG nor JPEG");
     refuseHostileImage(content);
-    memory_ = std::make_unique<MemoryFile>(content);
-    file_ = memory_->path();
+    memory_ = std::make_unique<MemoryFile>(bytes);
+    file_ = memory_->path().string();
     open(jpeg ? "jpeg" : "png", mostPixels);
 }
-
-ImageInput::~ImageInput() = default;
-ImageInput::ImageInput(ImageInput&&) noexcept = default;
-ImageInput& ImageInput::operator=(ImageInput&&) noexcept = default;
 
 const ImageHeader& ImageInput::header() const { return decoder_->header(); }
 

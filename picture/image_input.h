@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/memory_file.h"
 #include "picture/image_module.h"
 
 #include <algorithm>
@@ -21,9 +22,6 @@ public:
     ImageInput(const std::filesystem::path& path, std::uint64_t mostPixels);
     /// Opens a file's content, PNG or JPEG, as inside a scene. Throws SystemError also, if there is no memory for it.
     ImageInput(std::span<const std::uint8_t> content, std::uint64_t mostPixels);
-    ~ImageInput();
-    ImageInput(ImageInput&&) noexcept;
-    ImageInput& operator=(ImageInput&&) noexcept;
 
     const ImageHeader& header() const;
 
@@ -48,8 +46,7 @@ private:
     template <typename Value>
     void readRows(int first, int rows, Value* values);
 
-    class MemoryFile;
-    std::unique_ptr<MemoryFile> memory_; //!< what `file_` names, if it lies in memory
+    std::unique_ptr<MemoryFile> memory_; //!< what `file_` names, if it lies in memory; Debian's OpenImageIO reads JPEG only by name
     std::string file_;
     std::unique_ptr<ImageDecoder> decoder_;
 };

@@ -10,7 +10,7 @@ namespace lambert {
 void requireGnuplot();
 
 /// Runs a script in gnuplot, a child process that reads it from its standard input, and returns what it writes to standard
-/// output. Nothing passes through a shell. SIGPIPE is to be ignored. Throws SystemError with gnuplot's first complaint, Cancelled.
+/// output. Nothing passes through a shell. Throws SystemError with gnuplot's first complaint, Cancelled.
 std::string runGnuplot(const std::string& script, const Progress& progress);
 
 } // namespace lambert
