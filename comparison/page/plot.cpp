@@ -5,6 +5,7 @@
 #include "comparison/page/html.h"
 #include "core/error.h"
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,19 +27,9 @@ std::string gnuplotString(std::string_view text) {
     return result + '"';
 }
 
-void replaceAll(std::string& text, std::string_view from, std::string_view to) {
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-        text.replace(at, from.size(), to);
-}
-
-/// Labels of ticks are formats to gnuplot.
-std::string doubledPercent(std::string text) {
-    for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 2)) text.insert(at, 1, '%');
-    return text;
-}
-
 /// The `<svg>` element alone, see plotSvg.
 std::string embedded(std::string svg, const Plot& plot, int height) {
+    using boost::replace_all;
     const std::size_t begin = svg.find("<svg");
     const std::size_t end = svg.find("<g id=\"gnuplot_canvas\"");
     if (begin == std::string::npos || end == std::string::npos || svg.find("</svg>") == std::string::npos)
@@ -50,14 +41,14 @@ std::string embedded(std::string svg, const Plot& plot, int height) {
     svg = head + svg.substr(end);
     for (const char* quote : {"'", "\""}) {
         for (const char* attribute : {"fill", "stroke", "color"})
-            replaceAll(svg, fmt::format("{}={}black{}", attribute, quote, quote),
-                       fmt::format("{}={}currentColor{}", attribute, quote, quote));
+            replace_all(svg, fmt::format("{}={}black{}", attribute, quote, quote),
+                        fmt::format("{}={}currentColor{}", attribute, quote, quote));
         for (const char* id : {"gp", "textbox", "greybox"}) {
-            replaceAll(svg, fmt::format("id={}{}", quote, id), fmt::format("id={}{}_{}", quote, plot.name, id));
-            replaceAll(svg, fmt::format("href={}#{}", quote, id), fmt::format("href={}#{}_{}", quote, plot.name, id));
+            replace_all(svg, fmt::format("id={}{}", quote, id), fmt::format("id={}{}_{}", quote, plot.name, id));
+            replace_all(svg, fmt::format("href={}#{}", quote, id), fmt::format("href={}#{}_{}", quote, plot.name, id));
         }
     }
-    replaceAll(svg, "gnuplot_canvas", plot.name + "_canvas");
+    replace_all(svg, "gnuplot_canvas", plot.name + "_canvas");
     return svg;
 }
 
@@ -108,9 +99,10 @@ std::string axisScript(char axis, const PlotAxis& of, const Range& range) {
         if (roundStep(n) < lowest) continue;
         const bool labelled = n % 3 == 0 ? decades < 7.0 || n % 6 == 0 : decades < 1.7;
         if (labelled || decades < 4.0)
-            ticks.push_back(fmt::format("{} {:.9g} {}",
-                                        gnuplotString(labelled ? doubledPercent(of.text(roundStep(n))) : ""),
-                                        roundStep(n), labelled ? 0 : 1));
+            ticks.push_back(
+                fmt::format("{} {:.9g} {}",
+                            gnuplotString(labelled ? boost::replace_all_copy(of.text(roundStep(n)), "%", "%%") : ""),
+                            roundStep(n), labelled ? 0 : 1));
     }
     return fmt::format("set {0}range [{1:.9g}:{2:.9g}]\nset {0}tics ({3})\nset {0}label {4} noenhanced\n", axis, lowest,
                        highest, fmt::join(ticks, ", "), gnuplotString(of.label));
