@@ -67,7 +67,7 @@ public:
     }
 
     FormFactorComparison operator()() {
-        tell("reference");
+        options_.onRun("reference");
         const double start = processorSeconds();
         reference_ = makeReference(options_.reference, scene_, options_.seed, result_.threshold, progress_);
         result_.referenceSeconds = processorSeconds() - start;
@@ -83,22 +83,18 @@ public:
     }
 
 private:
-    void tell(const std::string& what) const {
-        if (options_.onRun) options_.onRun(what);
-    }
-
     EffortResult runEffort(MethodResult& of, double effort, bool last) {
         EffortResult result;
         result.effort = effort;
         std::vector<FormFactorMatrix> matrices;
         const int seeds = of.method->random ? options_.seeds : 1;
         for (int k = 0; k < seeds; ++k) {
-            tell(fmt::format("{} {}, seed {} of {}", of.method->name, effortNumber(effort), k + 1, seeds));
+            options_.onRun(fmt::format("{} {}, seed {} of {}", of.method->name, effortNumber(effort), k + 1, seeds));
             RunMeasures& run = result.runs.emplace_back();
             const Stopwatch watch;
             const double start = processorSeconds();
-            ComputedMatrix computed = of.method->compute(scene_, effort, options_.seed + static_cast<std::uint64_t>(k),
-                                                         MatrixStorage::Float, progress_);
+            TransportMatrix computed = of.method->compute(scene_, effort, options_.seed + static_cast<std::uint64_t>(k),
+                                                          MatrixStorage::Float, progress_);
             run.processorSeconds = processorSeconds() - start;
             run.wallSeconds = watch.seconds();
             run.rays = static_cast<double>(computed.rays);

@@ -69,7 +69,7 @@ struct FormFactorComparisonOptions {
     int seeds = 5;                   //!< runs of each method and effort, >= 1
     std::uint64_t seed = 1;          //!< of the first run; the others follow
     std::optional<double> threshold; //!< smallest factor that counts in relative errors; none: a tenth of 1 / #patches
-    std::function<void(const std::string&)> onRun; //!< told what begins, if given
+    std::function<void(const std::string&)> onRun = [](const std::string&) {}; //!< told what begins
 };
 
 struct FormFactorComparison {

@@ -84,13 +84,10 @@ Image toneMapped(const Image& radiance, float exposure) {
 
 VplPictures comparePictures(const MeshedScene& scene, const RadiosityReference& reference,
                             const VplComparisonOptions& options, const PictureOptions& picture, Progress& progress) {
-    const auto tell = [&](const std::string& what) {
-        if (options.onStage) options.onStage(what);
-    };
     const PixelPoints pixels = pixelPoints(*scene.rays, picture.camera, picture.width, picture.height);
     VplPictures result;
     result.camera = picture.camera;
-    tell("reference's picture");
+    options.onStage("reference's picture");
     // In units of what the eye gets: ρ / π of the irradiance.
     std::vector<double> weight;
     for (const Rgb& rho : pixels.reflectance)
@@ -106,7 +103,7 @@ VplPictures comparePictures(const MeshedScene& scene, const RadiosityReference& 
     }
     result.exposure = exposureOf(result.reference, pixels);
     for (const auto& method : options.methods) {
-        tell(method->name() + ", picture");
+        options.onStage(method->name() + ", picture");
         const Stopwatch watch;
         const VplView view{pixels.receivers, PictureView{picture.camera, picture.width, picture.height, pixels.pixel}};
         const MethodLight light = method->light(*scene.rays, view, options.effort, options.seed, progress);

@@ -23,11 +23,11 @@ public:
 
     VplComparison operator()(const RadiosityReference& reference) {
         result_.points = patchCentres(scene_.mesh, *scene_.rays, result_.patches);
-        tell("reference at the receivers");
+        options_.onStage("reference at the receivers");
         result_.reference =
             reference.at(result_.points.receivers, result_.points.weight, options_.gathering, progress_);
         if (options_.perBounce) {
-            tell("reference at the receivers, by bounce");
+            options_.onStage("reference at the receivers, by bounce");
             result_.referenceBounces =
                 reference.byBounce(result_.points.receivers, result_.points.weight, options_.gathering, progress_);
         }
@@ -39,9 +39,6 @@ public:
     }
 
 private:
-    void tell(const std::string& what) const {
-        if (options_.onStage) options_.onStage(what);
-    }
     std::uint64_t seed(int k) const { return options_.seed + static_cast<std::uint64_t>(k); }
     VplView view() const { return {result_.points.receivers}; }
 
@@ -66,8 +63,8 @@ private:
         rung.effort = effort;
         std::vector<Field> fields;
         for (int k = 0; k < method.seeds(options_.seeds); ++k) {
-            tell(fmt::format("{} {}, seed {} of {}", method.name(), countText(effort), k + 1,
-                             method.seeds(options_.seeds)));
+            options_.onStage(fmt::format("{} {}, seed {} of {}", method.name(), countText(effort), k + 1,
+                                         method.seeds(options_.seeds)));
             const Stopwatch watch;
             const double start = processorSeconds();
             MethodLight light = method.light(*scene_.rays, view(), effort, seed(k), progress_);
@@ -87,7 +84,8 @@ private:
         const std::vector<ReferenceLight>& known = result_.referenceBounces;
         std::vector<VplBounce> result(known.size());
         for (int k = 0; k < method.seeds(options_.seeds); ++k) {
-            tell(fmt::format("{}, by bounce, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
+            options_.onStage(
+                fmt::format("{}, by bounce, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
             const std::vector<Field> fields =
                 method.lightByBounce(*scene_.rays, view(), options_.effort, seed(k),
                                      static_cast<std::uint32_t>(known.size() - 1), progress_);
@@ -121,7 +119,8 @@ private:
         const VplMethod& method = *result.method;
         std::vector<std::vector<Field>> runs;
         for (int k = 0; k < method.seeds(options_.seeds); ++k) {
-            tell(fmt::format("{}, anatomy, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
+            options_.onStage(
+                fmt::format("{}, anatomy, seed {} of {}", method.name(), k + 1, method.seeds(options_.seeds)));
             runs.push_back(method.exchanged(*scene_.rays, view(), options_.effort, seed(k), progress_));
         }
         const Approximation sampling{"sampling", fmt::format("{} {}", countText(options_.effort), method.effort().name),
@@ -162,6 +161,10 @@ MeanDeviation VplRung::of(const std::function<double(const VplRun&)>& value) con
     std::vector<double> values;
     for (const VplRun& run : runs) values.push_back(value(run));
     return meanDeviation(values);
+}
+
+MeanDeviation VplRung::of(double FieldErrors::*value) const {
+    return of([value](const VplRun& run) { return run.errors.overall.*value; });
 }
 
 MeanDeviation VplBounce::of(double FieldErrors::*value) const {

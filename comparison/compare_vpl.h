@@ -37,6 +37,7 @@ struct VplRung {
     double sampling = 0.0; //!< RMS of what other seeds would change, in the unit of E
 
     MeanDeviation of(const std::function<double(const VplRun&)>& value) const;
+    MeanDeviation of(double FieldErrors::*value) const; //!< overall
 };
 
 /// Light that was reflected so many times.
@@ -63,10 +64,9 @@ struct VplComparisonOptions {
     std::optional<std::vector<double>> ladder; //!< further efforts; none: those of each method, see VplMethod::ladder
     int seeds = 16;                            //!< runs of each, >= 3
     std::uint64_t seed = 1;                    //!< of the first run; the others follow
-    ReferenceOptions reference;
-    bool perBounce = false;                          //!< compares each bounce, as many as the reference knows apart
-    PointGatherOptions gathering;                    //!< of the reference at the receivers
-    std::function<void(const std::string&)> onStage; //!< told what begins, if given
+    bool perBounce = false;                    //!< compares each bounce, as many as the reference knows apart
+    PointGatherOptions gathering;              //!< of the reference at the receivers
+    std::function<void(const std::string&)> onStage = [](const std::string&) {}; //!< told what begins
 };
 
 struct VplComparison {

@@ -26,11 +26,10 @@ TransportOptions ComparedMethod::options(double effort, std::uint64_t seed, Matr
     return options;
 }
 
-ComputedMatrix ComparedMethod::compute(const MeshedScene& scene, double effort, std::uint64_t seed,
-                                       MatrixStorage storage, Progress& progress) const {
+TransportMatrix ComparedMethod::compute(const MeshedScene& scene, double effort, std::uint64_t seed,
+                                        MatrixStorage storage, Progress& progress) const {
     const TransportPlan plan = planTransport(options(effort, seed, storage), scene.mesh, *scene.rays, progress);
-    TransportMatrix computed = computeMatrix(plan, scene.mesh, *scene.rays, progress);
-    return {std::move(computed.matrix), computed.rays};
+    return computeMatrix(plan, scene.mesh, *scene.rays, progress);
 }
 
 std::span<const ComparedMethod> comparedMethods() {

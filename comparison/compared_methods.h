@@ -12,12 +12,6 @@
 
 namespace lambert {
 
-/// A matrix, and the rays that it took.
-struct ComputedMatrix {
-    FormFactorMatrix matrix;
-    std::uint64_t rays = 0;
-};
-
 /// A way to compute form factors with one number that says how much work it puts in.
 struct ComparedMethod {
     TransportMethod method;
@@ -32,8 +26,8 @@ struct ComparedMethod {
     /// Its options with this effort, all others at their defaults.
     TransportOptions options(double effort, std::uint64_t seed, MatrixStorage storage) const;
     /// Throws Cancelled; SystemError if the matrix does not fit the options' memory limit.
-    ComputedMatrix compute(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,
-                           Progress& progress) const;
+    TransportMatrix compute(const MeshedScene& scene, double effort, std::uint64_t seed, MatrixStorage storage,
+                            Progress& progress) const;
 };
 
 /// All there are.

@@ -34,8 +34,8 @@ Image PixelPoints::picture(std::span<const RgbSum> irradiance) const {
 
 PixelPoints pixelPoints(const RayCaster& rays, const Camera& camera, int width, int height) {
     PixelPoints points;
-    points.width = points.unlit.width = width;
-    points.height = points.unlit.height = height;
+    points.unlit.width = width;
+    points.unlit.height = height;
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     points.unlit.pixels.assign(count, Rgb(0.0F));
     points.emits.assign(count, false);

@@ -23,7 +23,6 @@ ComparedPoints patchCentres(const PatchMesh& mesh, const RayCaster& rays, std::v
 
 /// What the middles of a picture's pixels show.
 struct PixelPoints {
-    int width = 0, height = 0;
     std::vector<Receiver> receivers;
     std::vector<std::uint32_t> pixel; //!< #receivers: row by row from the top
     std::vector<Rgb> reflectance;     //!< #receivers

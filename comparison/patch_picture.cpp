@@ -36,8 +36,7 @@ BakedMesh flatMesh(const PatchMesh& mesh, std::span<const Rgb> colours) {
     return flat;
 }
 
-} // namespace
-
+/// The scene with each patch in one colour (#patches, linear display colours), on a neutral grey. Throws Cancelled.
 Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const Rgb> colours, const Camera& camera,
                   const PictureSize& size, Progress& progress) {
     RenderOptions options;
@@ -49,6 +48,8 @@ Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const 
     image.content = PixelContent::Display;
     return image;
 }
+
+} // namespace
 
 Image headlightPicture(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, const Camera& camera,
                        const PictureSize& size, Progress& progress) {

@@ -15,10 +15,6 @@ struct PictureSize {
     int samplesPerAxis = 3;        //!< per pixel, see RenderOptions
 };
 
-/// The scene with each patch in one colour (#patches, linear display colours), on a neutral grey. Throws Cancelled.
-Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const Rgb> colours, const Camera& camera,
-                  const PictureSize& size, Progress& progress);
-
 /// The scene with each patch in its own grey, by how it is turned to the camera: for scenes without light.
 Image headlightPicture(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, const Camera& camera,
                        const PictureSize& size, Progress& progress);

@@ -129,9 +129,6 @@ double OwnError::total() const { return std::sqrt(mesh * mesh + transport * tran
 
 RadiosityReference::RadiosityReference(const MeshedScene& scene, const ReferenceOptions& options, Progress& progress)
     : scene_(scene) {
-    const auto tell = [&](const std::string& what) {
-        if (options.onStage) options.onStage(what);
-    };
     const RayCaster& rays = *scene.rays;
     const auto addLevel = [&](PatchMesh mesh) {
         PatchOptics optics = patchOptics(*scene.scene, mesh);
@@ -150,7 +147,7 @@ RadiosityReference::RadiosityReference(const MeshedScene& scene, const Reference
         static_cast<std::uint32_t>(std::exp2(std::floor(std::log2(std::clamp(perPatch, kFewestLines, kMostLines)))));
     std::uint32_t set = 0;
     const auto solution = [&](const Level& level, std::uint32_t lines) {
-        tell(fmt::format("reference, {} patches, {} lines", level.mesh.size(), lines));
+        options.onStage(fmt::format("reference, {} patches, {} lines", level.mesh.size(), lines));
         return solved(level.mesh, level.optics, rays, lines, options.bounces,
                       randomKey({set++, 0, 0, 0x52454652}, options.seed), progress);
     };

@@ -17,7 +17,7 @@ struct ReferenceOptions {
     double lines = 2e8; //!< in all, from the finest mesh; of each patch 1024 to 16384
     int bounces = 0;    //!< how many times reflected light is known apart, see RadiosityReference::byBounce
     std::uint64_t seed = 1;
-    std::function<void(const std::string&)> onStage; //!< told what begins, if given
+    std::function<void(const std::string&)> onStage = [](const std::string&) {}; //!< told what begins
 };
 
 /// What is known of a reference's distance from the truth, per m² as what it is of. The three are independent of each other.

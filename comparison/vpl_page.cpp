@@ -122,14 +122,13 @@ private:
             const VplMethodResult& method = of_.methods[m];
             const VplRung& main = method.ladder[method.main];
             std::vector<HtmlCell> row{method.method->name(), countText(main.effort),
-                                      countText(main.of([](const VplRun& run) { return run.lights; }).mean),
-                                      std::string("points")};
+                                      countText(main.of(&VplRun::lights).mean), std::string("points")};
             for (const auto value : {&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms,
                                      &FieldErrors::percentile99, &FieldErrors::maximum})
                 row.emplace_back(percentText(overall(main, value, mean_)));
             row.emplace_back(fmt::format("{:.4f}", overall(main, &FieldErrors::energyRatio, 1.0).mean));
             row.insert(row.end(), {HtmlCell("–"), HtmlCell("–")});
-            row.emplace_back(fmt::format("{:.3g}", main.of([](const VplRun& run) { return run.wallSeconds; }).mean));
+            row.emplace_back(fmt::format("{:.3g}", main.of(&VplRun::wallSeconds).mean));
             row.emplace_back(significance(method.significant));
             table.rows.push_back(row);
             const ComparedPicture& picture = in_.pictures.methods[m];
@@ -287,11 +286,10 @@ private:
         for (const VplMethodResult& method : of_.methods) {
             for (const VplRung& rung : method.ladder) {
                 std::vector<HtmlCell> row{method.method->name(), countText(rung.effort),
-                                          countText(rung.of([](const VplRun& run) { return run.lights; }).mean),
-                                          countText(rung.of([](const VplRun& run) { return run.rays; }).mean)};
+                                          countText(rung.of(&VplRun::lights).mean),
+                                          countText(rung.of(&VplRun::rays).mean)};
                 for (const auto seconds : {&VplRun::processorSeconds, &VplRun::wallSeconds})
-                    row.emplace_back(
-                        fmt::format("{:.3g}", rung.of([&](const VplRun& run) { return run.*seconds; }).mean));
+                    row.emplace_back(fmt::format("{:.3g}", rung.of(seconds).mean));
                 for (const auto value : {&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms})
                     row.emplace_back(percentText(overall(rung, value, mean_).mean));
                 row.emplace_back(percentText(rung.sampling / mean_));

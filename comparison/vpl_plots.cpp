@@ -23,9 +23,8 @@ CaptionedPlot errorOverCost(const VplComparison& comparison, bool overSeconds) {
         PlotCurve noise{method.method->name() + ", noise alone", {}, style++};
         if (const auto law = samplingLaw(method, overSeconds)) noise.label += ", slope " + slopeText(law);
         for (const VplRung& rung : method.ladder) {
-            const double x =
-                rung.of([&](const VplRun& run) { return overSeconds ? run.processorSeconds : run.lights; }).mean;
-            const MeanDeviation y = rung.of([](const VplRun& run) { return run.errors.overall.relativeRms; });
+            const double x = rung.of(overSeconds ? &VplRun::processorSeconds : &VplRun::lights).mean;
+            const MeanDeviation y = rung.of(&FieldErrors::relativeRms);
             error.points.push_back({x, y.mean, y.mean - y.deviation, y.mean + y.deviation});
             noise.points.push_back({x, rung.sampling / mean, rung.sampling / mean, rung.sampling / mean});
         }

@@ -31,17 +31,13 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 
 Json meanJson(const MeanDeviation& value) { return {{"mean", value.mean}, {"deviation", value.deviation}}; }
 
-MeanDeviation overall(const VplRung& rung, double FieldErrors::*value) {
-    return rung.of([value](const VplRun& run) { return run.errors.overall.*value; });
-}
-
 Json rungJson(const VplRung& rung, double mean) {
     Json json{{"vpls", rung.effort},
-              {"lights", meanJson(rung.of([](const VplRun& run) { return run.lights; }))},
-              {"rays", meanJson(rung.of([](const VplRun& run) { return run.rays; }))},
-              {"seconds", meanJson(rung.of([](const VplRun& run) { return run.wallSeconds; }))},
-              {"cpu_seconds", meanJson(rung.of([](const VplRun& run) { return run.processorSeconds; }))}};
-    for (const Column& column : kColumns) json[column.key] = meanJson(overall(rung, column.value));
+              {"lights", meanJson(rung.of(&VplRun::lights))},
+              {"rays", meanJson(rung.of(&VplRun::rays))},
+              {"seconds", meanJson(rung.of(&VplRun::wallSeconds))},
+              {"cpu_seconds", meanJson(rung.of(&VplRun::processorSeconds))}};
+    for (const Column& column : kColumns) json[column.key] = meanJson(rung.of(column.value));
     json["relative_sampling"] = rung.sampling / mean;
     return json;
 }
@@ -86,8 +82,8 @@ Json bouncesJson(const std::vector<VplBounce>& bounces, const std::vector<Refere
 Json methodJson(const VplMethodResult& result, double mean) {
     const VplRung& main = result.ladder[result.main];
     Json json{{"name", result.method->name()}, {"vpls", main.effort}};
-    json["seconds"] = main.of([](const VplRun& run) { return run.wallSeconds; }).mean;
-    for (const Column& column : kColumns) json[column.key] = overall(main, column.value).mean;
+    json["seconds"] = main.of(&VplRun::wallSeconds).mean;
+    for (const Column& column : kColumns) json[column.key] = main.of(column.value).mean;
     json["significant"] = result.significant;
     json["channels"] = channelsJson(main);
     Json options = Json::object();
@@ -156,8 +152,7 @@ std::string bouncesText(const VplMethodResult& method, const std::vector<Referen
 std::optional<PowerLaw> samplingLaw(const VplMethodResult& method, bool overSeconds) {
     std::vector<double> cost, error;
     for (const VplRung& rung : method.ladder) {
-        cost.push_back(
-            rung.of([&](const VplRun& run) { return overSeconds ? run.processorSeconds : run.lights; }).mean);
+        cost.push_back(rung.of(overSeconds ? &VplRun::processorSeconds : &VplRun::lights).mean);
         error.push_back(rung.sampling);
     }
     return fitPowerLaw(cost, error);
@@ -221,16 +216,15 @@ std::string vplComparisonText(const VplComparison& comparison) {
     for (const VplMethodResult& method : comparison.methods) {
         for (const VplRung& rung : method.ladder) {
             text += fmt::format("{:<18} {:>8} {:>8} {:>8.3g}", method.method->name(), countText(rung.effort),
-                                countText(rung.of([](const VplRun& run) { return run.lights; }).mean),
-                                rung.of([](const VplRun& run) { return run.processorSeconds; }).mean);
+                                countText(rung.of(&VplRun::lights).mean), rung.of(&VplRun::processorSeconds).mean);
             for (const Column& column : kColumns) {
-                const double value = overall(rung, column.value).mean;
+                const double value = rung.of(column.value).mean;
                 text += column.value == &FieldErrors::energyRatio
                             ? fmt::format(" {:>10.4f}", value)
                             : fmt::format(" {:>10}", percentText(column.relative ? value : value / mean));
             }
             text += fmt::format(" {:>10}{}\n", percentText(rung.sampling / mean),
-                                overall(rung, &FieldErrors::rms).mean > own ? "" : "  not significant");
+                                rung.of(&FieldErrors::rms).mean > own ? "" : "  not significant");
         }
         if (const auto law = samplingLaw(method, false))
             text += fmt::format("{:<18} noise ~ lights^({}), seconds^({})\n", "", slopeText(law),
