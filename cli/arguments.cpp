@@ -19,26 +19,21 @@
 namespace lambert {
 
 void addMeshArguments(CLI::App& command, TransportArguments& a, const std::string& patches) {
+    command.option_defaults()->group("Mesh");
     command
         .add_option(
             "--quality", a.quality,
             "preview, normal or high: patches, resolution, rays to the sky and tolerance, unless given [normal]")
-        ->check(CLI::IsMember({"preview", "normal", "high"}))
-        ->group("Mesh");
-    auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")
-                       ->type_name("METRES")
-                       ->group("Mesh");
+        ->check(CLI::IsMember({"preview", "normal", "high"}));
+    auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")->type_name("METRES");
     command
         .add_option("--patches", a.patches,
                     fmt::format("About so many patches; 0 keeps the input's polygons [{}]", patches))
         ->type_name("N")
         ->check(between(0.0, 2e8))
-        ->excludes(length)
-        ->group("Mesh");
-    command
-        .add_flag("--whole-contacts", a.wholeContacts,
-                  "Do not divide surfaces along the outlines of what stands on them or hovers over them")
-        ->group("Mesh");
+        ->excludes(length);
+    command.add_flag("--whole-contacts", a.wholeContacts,
+                     "Do not divide surfaces along the outlines of what stands on them or hovers over them");
 }
 
 void addTransportArguments(CLI::App& command, TransportArguments& a) {
@@ -62,44 +57,33 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
 }
 
 void addRunArguments(CLI::App& command, RunArguments& a) {
+    command.option_defaults()->group("Run");
     command.add_option("--seed", a.seed, "Of all random numbers [1]")
         ->type_name("S")
-        ->check(between(0.0, 18446744073709551615.0))
-        ->group("Run");
-    command.add_option("--threads", a.threads, "0: one per processor [0]")
-        ->type_name("N")
-        ->check(between(0, 1024))
-        ->group("Run");
-    command.add_option("--json", a.json, "Writes the report as JSON")->type_name("FILE")->group("Run");
-    command.add_flag("--quiet", a.quiet, "Only errors and warnings")->group("Run");
+        ->check(between(0.0, 18446744073709551615.0));
+    command.add_option("--threads", a.threads, "0: one per processor [0]")->type_name("N")->check(between(0, 1024));
+    command.add_option("--json", a.json, "Writes the report as JSON")->type_name("FILE");
+    command.add_flag("--quiet", a.quiet, "Only errors and warnings");
 }
 
 void addPictureArguments(CLI::App& command, PictureArguments& a) {
-    command.add_option("--image", a.path, "Renders the baked mesh: linear .exr or tone-mapped .png")
-        ->type_name("FILE")
-        ->group("Picture");
+    command.option_defaults()->group("Picture");
+    command.add_option("--image", a.path, "Renders the baked mesh: linear .exr or tone-mapped .png")->type_name("FILE");
     addCameraArguments(command, a);
-    command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")
-        ->check(between(1, 64))
-        ->group("Picture");
+    command.add_option("--samples", a.samples, "Rays per pixel along each axis, 1 to 64 [4]")->check(between(1, 64));
 }
 
 void addCameraArguments(CLI::App& command, PictureArguments& a) {
-    command.add_option("--size", a.size, "[512x512]")->type_name("WxH")->group("Picture");
-    auto* camera =
-        command.add_option("--camera", a.camera, "A camera of the scene, by name")->type_name("NAME")->group("Picture");
+    command.option_defaults()->group("Picture");
+    command.add_option("--size", a.size, "[512x512]")->type_name("WxH");
+    auto* camera = command.add_option("--camera", a.camera, "A camera of the scene, by name")->type_name("NAME");
     auto* eye = command.add_option("--eye", a.eye, "Where a camera of one's own stands, in metres")
                     ->type_name("x,y,z")
-                    ->excludes(camera)
-                    ->group("Picture");
-    auto* lookAt =
-        command.add_option("--look-at", a.lookAt, "What it looks at")->type_name("x,y,z")->needs(eye)->group("Picture");
+                    ->excludes(camera);
+    auto* lookAt = command.add_option("--look-at", a.lookAt, "What it looks at")->type_name("x,y,z")->needs(eye);
     eye->needs(lookAt);
-    command.add_option("--up", a.up, "[0,1,0]")->type_name("x,y,z")->needs(eye)->group("Picture");
-    command.add_option("--fov", a.fov, "Vertical field of view [45]")
-        ->type_name("DEGREES")
-        ->needs(eye)
-        ->group("Picture");
+    command.add_option("--up", a.up, "[0,1,0]")->type_name("x,y,z")->needs(eye);
+    command.add_option("--fov", a.fov, "Vertical field of view [45]")->type_name("DEGREES")->needs(eye);
 }
 
 namespace {

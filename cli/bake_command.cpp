@@ -76,34 +76,27 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
         ->required()
         ->type_name("SCENE");
     addSceneOptions(command, arguments->scene);
+    command.option_defaults()->group("Bake");
     auto* output = command.add_option("-o,--output", arguments->outputs, "Baked scene; may be given several times")
                        ->type_name("FILE")
-                       ->allow_extra_args(false)
-                       ->group("Bake");
+                       ->allow_extra_args(false);
     command
         .add_option("--output-dir", arguments->outputDir,
                     "Folder of the baked scenes, under their own names, with a .log beside each")
         ->type_name("DIR")
-        ->excludes(output)
-        ->group("Bake");
+        ->excludes(output);
     command.add_option("--format", arguments->format, "glb, gltf, ply or obj [by the name's end; glb in a folder]")
-        ->check(CLI::IsMember({"glb", "gltf", "ply", "obj"}))
-        ->group("Bake");
+        ->check(CLI::IsMember({"glb", "gltf", "ply", "obj"}));
     command.add_option("--reconstruction", arguments->reconstruction, "Of light at the vertices [average]")
-        ->check(CLI::IsMember({"average"}))
-        ->group("Bake");
+        ->check(CLI::IsMember({"average"}));
     command.add_option("--quantity", arguments->quantity, "What the colours show: radiosity or irradiance [radiosity]")
-        ->check(CLI::IsMember({"radiosity", "irradiance"}))
-        ->group("Bake");
+        ->check(CLI::IsMember({"radiosity", "irradiance"}));
     command
         .add_option("--exposure", arguments->exposure,
                     "EV, display = value · 2^EV; auto: 99 % of all is below 0.9 [auto]")
-        ->type_name("EV")
-        ->group("Bake");
-    command
-        .add_flag("--per-light", arguments->perLight,
-                  "Also writes each light on its own: emitting materials, lights by name, the sky")
-        ->group("Bake");
+        ->type_name("EV");
+    command.add_flag("--per-light", arguments->perLight,
+                     "Also writes each light on its own: emitting materials, lights by name, the sky");
     addTransportArguments(command, arguments->transport);
     command
         .add_option("--solution", arguments->solution,

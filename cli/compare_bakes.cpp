@@ -121,16 +121,15 @@ void addCompareBakes(CLI::App& compare, CommandRun& run) {
     CompareBakesArguments& a = *arguments;
     CLI::App& command =
         *compare.add_subcommand("bakes", "Two solutions of the same scene: how far the light of B is from that of A");
+    command.option_defaults()->group("Comparison");
     command.add_option("A", a.reference, "The reference: a file by bake --solution")->required()->type_name("FILE");
     command.add_option("B", a.other, "Another, of the same patches or of others")->required()->type_name("FILE");
     command
         .add_option("-o,--output", a.output,
                     "Folder for index.html, results.json, results.csv and pictures of the difference")
-        ->type_name("DIR")
-        ->group("Comparison");
+        ->type_name("DIR");
     command.add_option("--quantity", a.quantity, "What is compared: radiosity or irradiance [irradiance]")
-        ->check(CLI::IsMember({"radiosity", "irradiance"}))
-        ->group("Comparison");
+        ->check(CLI::IsMember({"radiosity", "irradiance"}));
     addPictureArguments(command, a.picture);
     addRunArguments(command, a.run);
     command.callback([arguments, &run] { run = [arguments] { return compareBakes(*arguments); }; });

@@ -143,38 +143,33 @@ void addCompareFormFactors(CLI::App& compare, CommandRun& run) {
     CLI::App& command =
         *compare.add_subcommand("formfactors", "Methods for form factors: error against cost, as a page with plots");
     addSceneArguments(command, a.scene);
+    command.option_defaults()->group("Comparison");
     command.add_option("-o,--output", a.output, "Folder for index.html, results.json, results.csv and pictures")
         ->required()
-        ->type_name("DIR")
-        ->group("Comparison");
+        ->type_name("DIR");
     std::vector<std::string> names;
     for (const ComparedMethod& method : comparedMethods()) names.push_back(method.name);
     command.add_option("--methods", a.methods, fmt::format("all, or some of {} [all]", fmt::join(names, ",")))
-        ->type_name("A,B,…")
-        ->group("Comparison");
+        ->type_name("A,B,…");
     command
         .add_option(
             "--efforts", a.efforts,
             "Resolutions or numbers of lines that a method is run with, such as hemicube=32,64; may be repeated")
         ->type_name("METHOD=E,E,…")
-        ->allow_extra_args(false)
-        ->group("Comparison");
+        ->allow_extra_args(false);
     command
         .add_option(
             "--reference", a.reference,
             "auto, exact (convex scenes), METHOD:EFFORT or a matrix file; auto: exact, else closed forms [auto]")
-        ->type_name("REFERENCE")
-        ->group("Comparison");
+        ->type_name("REFERENCE");
     command.add_option("--seeds", a.seeds, "Runs of each method and effort, 1 to 1000 [5]")
         ->type_name("K")
-        ->check(between(1.0, 1000.0))
-        ->group("Comparison");
+        ->check(between(1.0, 1000.0));
     command
         .add_option("--threshold", a.threshold,
                     "Smallest factor that counts in relative errors, 0 to 1 [0.1 / patches]")
         ->type_name("F")
-        ->check(between(0.0, 1.0))
-        ->group("Comparison");
+        ->check(between(0.0, 1.0));
     addMeshArguments(command, a.transport);
     addCameraArguments(command, a.picture);
     addRunArguments(command, a.run);

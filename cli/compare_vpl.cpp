@@ -212,51 +212,42 @@ void addCompareVpl(CLI::App& compare, CommandRun& run) {
     CLI::App& command = *compare.add_subcommand(
         "vpl", "Methods by virtual point lights: their error against patch radiosity, and what it is made of");
     addSceneArguments(command, a.scene);
+    command.option_defaults()->group("Comparison");
     command.add_option("-o,--output", a.output, "Folder for index.html, results.json, results.csv and pictures")
         ->required()
-        ->type_name("DIR")
-        ->group("Comparison");
+        ->type_name("DIR");
     command
         .add_option("--methods", a.methods, fmt::format("all, or some of {} [all]", fmt::join(vplMethodNames(), ",")))
-        ->type_name("A,B,…")
-        ->group("Comparison");
+        ->type_name("A,B,…");
     command.add_option("--vpls", a.vpls, "Particles of the anatomy and the pictures, 1 to 16777216 [1024]")
         ->type_name("N")
-        ->check(between(1.0, kMostVpls))
-        ->group("Comparison");
+        ->check(between(1.0, kMostVpls));
     command.add_option("--ladder", a.ladder, "Further numbers of particles [N/16 N/4 4N 16N]")
         ->type_name("N,N,…")
         ->delimiter(',')
-        ->check(between(1.0, kMostVpls))
-        ->group("Comparison");
+        ->check(between(1.0, kMostVpls));
     command.add_option("--seeds", a.seeds, "Runs of each method and number, 3 to 1000 [16]")
         ->type_name("K")
-        ->check(between(3.0, 1000.0))
-        ->group("Comparison");
+        ->check(between(3.0, 1000.0));
     command
         .add_option("--per-bounce", a.perBounce,
                     "Also the errors of light that was reflected 0, 1, ... K times, each by itself; 0 to 16")
         ->type_name("K")
-        ->check(between(0.0, 16.0))
-        ->group("Comparison");
+        ->check(between(0.0, 16.0));
+    command.option_defaults()->group("Method");
     command.add_option("--walk", a.walk, "How particles end: quasi, roulette or fixed [quasi]")
-        ->check(CLI::IsMember({"quasi", "roulette", "fixed"}))
-        ->group("Method");
+        ->check(CLI::IsMember({"quasi", "roulette", "fixed"}));
     command.add_option("--vpl-bounces", a.bounces, "Of fixed walks, 0 to 126 [4]")
         ->type_name("K")
-        ->check(between(0.0, 126.0))
-        ->group("Method");
+        ->check(between(0.0, 126.0));
     command
         .add_option("--clamp", a.clamp, "Bound of the geometric term, in units of 6 / area of the scene; or none [10]")
-        ->type_name("G|none")
-        ->group("Method");
+        ->type_name("G|none");
     command
         .add_option("--visibility", a.visibility,
                     "Of reflected light: exact, by shadow rays, or none, to see what leaving it out costs [exact]")
-        ->check(CLI::IsMember({"exact", "none"}))
-        ->group("Method");
-    command.add_flag("--compensate", a.compensate, "Recovers what the bound takes away (Kollig, Keller 2004)")
-        ->group("Method");
+        ->check(CLI::IsMember({"exact", "none"}));
+    command.add_flag("--compensate", a.compensate, "Recovers what the bound takes away (Kollig, Keller 2004)");
     addMeshArguments(command, a.transport, "theirs and a twentieth or 1000 more");
     addCameraArguments(command, a.picture);
     addRunArguments(command, a.run);

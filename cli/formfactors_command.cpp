@@ -339,36 +339,32 @@ void addFormFactorsCommand(CLI::App& program, CommandRun& run) {
     CLI::App& command =
         *program.add_subcommand("formfactors", "Form factors (view factors): matrix, groups, heat flow");
     addSceneArguments(command, arguments->scene);
+    command.option_defaults()->group("Form factors");
     command
         .add_option(
             "-o,--output", arguments->output,
             "The matrix: .mtx (Matrix Market), .npy (NumPy), .csv or .txt (View3D); with --group-by the table as "
             ".csv")
-        ->type_name("FILE")
-        ->group("Form factors");
+        ->type_name("FILE");
     command
         .add_option("--form-factors", arguments->transport.formFactors,
                     "Reads the matrix from such a file instead of computing it")
-        ->type_name("MATRIX")
-        ->group("Form factors");
+        ->type_name("MATRIX");
     command
         .add_option("--points", arguments->points,
                     "Factors from points instead of patches, one row each; CSV with x,y,z,nx,ny,nz in metres")
-        ->type_name("FILE")
-        ->group("Form factors");
+        ->type_name("FILE");
     auto* groupBy = command
                         .add_option("--group-by", arguments->groupBy,
                                     "Sums factors and exchange areas over groups: material or node")
                         ->check(CLI::IsMember({"material", "node"}))
-                        ->type_name("WHAT")
-                        ->group("Form factors");
+                        ->type_name("WHAT");
     command
         .add_option("--temperatures", arguments->temperatures,
                     "Net radiative heat of each group; CSV with group,kelvin,emissivity (kelvin or adiabatic), and "
                     "environment,kelvin; repairs the factors")
         ->needs(groupBy)
-        ->type_name("FILE")
-        ->group("Form factors");
+        ->type_name("FILE");
     addMeshArguments(command, arguments->transport);
     addFormFactorArguments(command, arguments->transport);
     addRunArguments(command, arguments->run);

@@ -107,31 +107,28 @@ std::shared_ptr<const Environment> skyOf(const LightArguments& a, const Sun& sun
 } // namespace
 
 void addLightArguments(CLI::App& command, LightArguments& a) {
+    command.option_defaults()->group("Light");
     command
         .add_option(
             "--sky", a.sky,
             "What the scene lies in: radiance r,g,b from all around; clear (CIE, with --sun); overcast (CIE); or a "
             "latitude-longitude picture, north (-Z) in its middle [darkness]")
-        ->type_name("FILE|r,g,b|clear|overcast")
-        ->group("Light");
+        ->type_name("FILE|r,g,b|clear|overcast");
     command
         .add_option("--sun", a.sun,
                     "Where the sun stands: degrees clockwise from north (-Z; east is +X), and above the horizon; "
                     "optionally its illuminance, lx [that under a clear sky; none under an overcast one]")
-        ->type_name("AZIMUTH,ELEVATION[,LUX]")
-        ->group("Light");
+        ->type_name("AZIMUTH,ELEVATION[,LUX]");
     command
         .add_option("--light-points", a.points,
                     "Points of a patch from which each light without area is looked for [256]")
         ->type_name("N")
-        ->check(between(1, 65536))
-        ->group("Light");
+        ->check(between(1, 65536));
     command
         .add_option("--sky-rays", a.skyRays,
                     "Rays of a patch to the sky [4096; 512 and 16384 with --quality preview and high]")
         ->type_name("N")
-        ->check(between(2, 16777216))
-        ->group("Light");
+        ->check(between(2, 16777216));
 }
 
 void checkLights(const LightArguments& a) {

@@ -104,7 +104,8 @@ void addProbeCommand(CLI::App& program, CommandRun& run) {
         ->required()
         ->type_name("POINTS.csv");
     command.add_option("-o,--output", arguments->output, "CSV with E and its standard error [standard output]")
-        ->type_name("OUT.csv");
+        ->type_name("OUT.csv")
+        ->group("Options");
     addTransportArguments(command, arguments->transport);
     addRunArguments(command, arguments->run);
     command.callback([arguments, &run] { run = [arguments] { return probe(*arguments); }; });

@@ -65,24 +65,22 @@ void addSceneArguments(CLI::App& command, SceneArguments& a) {
 }
 
 void addSceneOptions(CLI::App& command, SceneArguments& a) {
+    command.option_defaults()->group("Scene");
     command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
-        ->type_name("METRES")
-        ->group("Scene");
-    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides")->group("Scene");
+        ->type_name("METRES");
+    command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides");
     command
         .add_option("--curve-segments", a.curveSegments,
                     "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]")
         ->type_name("N")
-        ->check(between(4.0, 1024.0))
-        ->group("Scene");
+        ->check(between(4.0, 1024.0));
     command
         .add_option("--most-polygons", a.mostPolygons,
                     "Refuses scenes with more; 0: a million and one for each byte of the file [0]")
         ->type_name("N")
-        ->check(between(0.0, 4e9))
-        ->group("Scene");
+        ->check(between(0.0, 4e9));
     const auto addList = [&](const char* name, std::vector<std::string>& list, const char* text, const char* type) {
-        command.add_option(name, list, text)->type_name(type)->allow_extra_args(false)->group("Scene");
+        command.add_option(name, list, text)->type_name(type)->allow_extra_args(false);
     };
     addList("--emit", a.emit, "Emitted radiance L_e of a material, per m² and sr; * in a name: any characters",
             "MATERIAL=r,g,b");
@@ -92,14 +90,10 @@ void addSceneOptions(CLI::App& command, SceneArguments& a) {
     auto* overrides =
         command
             .add_option("--overrides", a.overrides, "Such changes as JSON [SCENE's name.lambert.json, if it is there]")
-            ->type_name("FILE")
-            ->group("Scene");
-    command.add_flag("--no-overrides", a.noOverrides, "Does not look for that file")
-        ->excludes(overrides)
-        ->group("Scene");
-    command.add_flag("--strict", a.strict, "A missing image and the like is an error, not a warning")->group("Scene");
-    command.add_flag("--allow-outside-files", a.allowOutsideFiles, "The scene may name files outside its own folder")
-        ->group("Scene");
+            ->type_name("FILE");
+    command.add_flag("--no-overrides", a.noOverrides, "Does not look for that file")->excludes(overrides);
+    command.add_flag("--strict", a.strict, "A missing image and the like is an error, not a warning");
+    command.add_flag("--allow-outside-files", a.allowOutsideFiles, "The scene may name files outside its own folder");
 }
 
 bool unitIsGiven(const SceneArguments& a, const AppliedOverrides& overrides) {

@@ -50,13 +50,14 @@ void refuseBesideFile(const TransportArguments& a) {
 } // namespace
 
 void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std::vector<std::string>& methods) {
+    command.option_defaults()->group("Transport");
     const auto addChoice = [&](const char* name, auto& value, const std::string& text, const char* type,
                                const std::vector<std::string>& choices) {
-        command.add_option(name, value, text)->check(CLI::IsMember(choices))->type_name(type)->group("Transport");
+        command.add_option(name, value, text)->check(CLI::IsMember(choices))->type_name(type);
     };
     const auto addNumber = [&](const char* name, auto& value, const char* text, const char* type, double low,
                                double high) {
-        command.add_option(name, value, text)->check(between(low, high))->type_name(type)->group("Transport");
+        command.add_option(name, value, text)->check(between(low, high))->type_name(type);
     };
     addChoice("--method", a.method,
               fmt::format("How form factors are computed, or light without them: {} [auto; hemicube with its options]",
@@ -93,26 +94,21 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         "STORAGE", {"double", "float", "compact", "none", "auto"});
     addNumber("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]", "BYTES",
               1.0, 1e18);
-    command
-        .add_flag("--repair", a.repair,
-                  "Makes the form factors reciprocal, A_i F_ij = A_j F_ji, and their rows sum to what they must")
-        ->group("Transport");
+    command.add_flag("--repair", a.repair,
+                     "Makes the form factors reciprocal, A_i F_ij = A_j F_ji, and their rows sum to what they must");
+    command.option_defaults()->group("Run");
     auto* checkpoint =
         command
             .add_option("--checkpoint", a.checkpoint,
                         "Keeps finished rows of form factors in a file, every minute and when interrupted, and the "
                         "solver's state in FILE.solver, every minute, also that of solvers without form factors; "
                         "removed at the end")
-            ->type_name("FILE")
-            ->group("Run");
-    command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")
-        ->needs(checkpoint)
-        ->group("Run");
+            ->type_name("FILE");
+    command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")->needs(checkpoint);
     command.add_option("--checkpoint-interval", a.checkpointInterval, "[60]")
         ->type_name("SECONDS")
         ->check(between(0.0, 1e6))
-        ->needs(checkpoint)
-        ->group("Run");
+        ->needs(checkpoint);
 }
 
 MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) {

@@ -43,29 +43,26 @@ void refuseOthers(const TransportArguments& a) {
 } // namespace
 
 void addInstantRadiosityArguments(CLI::App& command, TransportArguments& a) {
-    constexpr auto kGroup = "Instant radiosity";
+    command.option_defaults()->group("Instant radiosity");
     command
         .add_option(
             "--vpls", a.vpls,
             "Particles from the lights, 1 to 16777216: each leaves virtual point lights at its start and wherever "
             "it is reflected [4096]")
         ->type_name("N")
-        ->check(between(1.0, 16777216.0))
-        ->group(kGroup);
+        ->check(between(1.0, 16777216.0));
     command
         .add_option(
             "--walk", a.walk,
             "How particles end: quasi, as a part of them that falls by the mean reflectance; roulette, by chance; "
             "fixed, after --bounces [quasi]")
         ->type_name("HOW")
-        ->check(CLI::IsMember({"quasi", "roulette", "fixed"}))
-        ->group(kGroup);
+        ->check(CLI::IsMember({"quasi", "roulette", "fixed"}));
     command
         .add_option("--clamp", a.clamp,
                     "Bound of the geometric term cosθ cosθ' / d², in units of six to the scene's area; or none [10]")
-        ->type_name("G")
-        ->group(kGroup);
-    command.add_flag("--compensate", a.compensate, "Recovers by rays what the bound takes away")->group(kGroup);
+        ->type_name("G");
+    command.add_flag("--compensate", a.compensate, "Recovers by rays what the bound takes away");
 }
 
 double geometricBound(const std::string& text) {
