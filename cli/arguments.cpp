@@ -3,7 +3,6 @@
 #include "cli/validators.h"
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "picture/image.h"
 #include "rendering/default_camera.h"
 
@@ -221,19 +220,16 @@ Picture picture(const PictureArguments& a, const Scene& scene, const RayCaster& 
     return result;
 }
 
-void applyThreads(const RunArguments& run) { setThreadCount(run.threads); }
-
 void logLine(const RunArguments& run, const std::string& line) {
-    if (!run.quiet) writeLog(line + "\n");
+    if (!run.quiet) writeLog(printable(line) + "\n");
 }
 
-void warnLine(const std::string& line) { writeLog("warning: " + line + "\n"); }
+void warnLine(const std::string& line) { writeLog("warning: " + printable(line) + "\n"); }
 
 void logReport(const RunArguments& run, const ReadReport& report) {
     if (!report.overrides.file.empty())
-        logLine(run, printable(fmt::format("{}: changes the scene (--no-overrides ignores it)",
-                                           report.overrides.file.string())));
-    for (const std::string& warning : report.warnings) warnLine(printable(warning));
+        logLine(run, fmt::format("{}: changes the scene (--no-overrides ignores it)", report.overrides.file.string()));
+    for (const std::string& warning : report.warnings) warnLine(warning);
 }
 
 } // namespace lambert

@@ -137,10 +137,7 @@ void checkCamera(const PictureArguments& arguments, const Scene& scene);
 /// "x,y,z" as a vector. Throws UsageError that names the option.
 glm::vec3 parseVector(const std::string& text, const std::string& option);
 
-/// Applies --threads.
-void applyThreads(const RunArguments& run);
-
-/// Log lines on stderr, unless --quiet.
+/// Log lines on stderr, made printable; the first not under --quiet.
 void logLine(const RunArguments& run, const std::string& line);
 void warnLine(const std::string& line);
 

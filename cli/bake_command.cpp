@@ -3,10 +3,11 @@
 #include "cli/batch.h"
 #include "cli/batch_plan.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
+
+#include "core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -38,9 +39,8 @@ ExitCode bakeOneScene(const BakeArguments& a, const BakePlan& plan) {
     const auto& rows = a.transport.checkpoint;
     for (const auto& target : {a.run.json, rows, solverCheckpointPath(rows)}) targets.push_back(target);
     checkTargets(targets, filesRead(a, job));
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     SceneLog log(a.run.quiet, "", job.scene.string());
     const BakeOutcome outcome = bakeJob(a, plan, job, log, progress);
     if (!a.run.json.empty()) writeJson(outcome.report, a.run.json);
@@ -87,8 +87,6 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
         ->excludes(output);
     command.add_option("--format", arguments->format, "glb, gltf, ply or obj [by the name's end; glb in a folder]")
         ->check(CLI::IsMember({"glb", "gltf", "ply", "obj"}));
-    command.add_option("--reconstruction", arguments->reconstruction, "Of light at the vertices [average]")
-        ->check(CLI::IsMember({"average"}));
     command.add_option("--quantity", arguments->quantity, "What the colours show: radiosity or irradiance [radiosity]")
         ->check(CLI::IsMember({"radiosity", "irradiance"}));
     command

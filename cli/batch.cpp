@@ -2,12 +2,12 @@
 #include "cli/bake_report.h"
 #include "cli/batch_table.h"
 #include "cli/failure.h"
-#include "cli/interrupt.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
 
+#include "core/parallel.h"
 #include "core/process.h"
 #include "core/stopwatch.h"
 #include "core/whole_file.h"
@@ -111,9 +111,8 @@ ExitCode runBatch(const BakeArguments& a, const BakePlan& plan, const std::vecto
     const Stopwatch total;
     if (!a.dryRun && !a.outputDir.empty()) createFolder(a.outputDir);
     if (!a.run.json.empty()) requireWritable(a.run.json);
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
 
     std::vector<BatchRow> rows(jobs.size());
     for (std::size_t i = 0; i < jobs.size() && !progress.cancelled(); ++i) {

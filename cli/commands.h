@@ -17,4 +17,8 @@ void addCompareCommand(CLI::App& program, CommandRun& run);
 void addInfoCommand(CLI::App& program, CommandRun& run);
 void addVerifyCommand(CLI::App& program, CommandRun& run);
 
+/// The same below `compare`.
+void addCompareVpl(CLI::App& compare, CommandRun& run);
+void addCompareBakes(CLI::App& compare, CommandRun& run);
+
 } // namespace lambert

@@ -1,16 +1,14 @@
-#include "cli/compare_bakes.h"
-
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
+#include "cli/commands.h"
 #include "cli/compare_folder.h"
-#include "cli/interrupt.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
-#include "cli/terminal_text.h"
 
 #include "comparison/bake_comparison_report.h"
 #include "comparison/bake_page.h"
 #include "comparison/page/scale_bar.h"
+#include "core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -79,7 +77,7 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
         files.push_back({"results.json", jsonText(reportOf(a, reference, other, comparison))});
         progress.throwIfCancelled();
         writePageFolder(a.output, std::move(files));
-        logLine(a.run, printable(fmt::format("{}: open index.html in a browser", a.output.string())));
+        logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
     }
     if (!a.picture.path.empty()) {
         const DifferencePicture found = differencePicture(reference, comparison, rays, shot.camera, size, progress);
@@ -97,17 +95,15 @@ ExitCode compareBakes(const CompareBakesArguments& a) {
         checkTargets(others, inputs);
     else
         checkPageFolder(a.output, others, inputs);
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     const StoredSolution reference = readSolution(a.reference);
     const StoredSolution other = readSolution(a.other);
     const BakeComparison comparison = compareBakes(reference, other, quantityOf(a));
     if (!comparison.samePatches)
-        logLine(a.run,
-                printable(fmt::format("the patches differ: B is looked up at the centres of A's ({:.2g} % of the "
-                                      "area without counterpart)",
-                                      100.0 * comparison.unmatchedArea)));
+        logLine(a.run, fmt::format("the patches differ: B is looked up at the centres of A's ({:.2g} % of the "
+                                   "area without counterpart)",
+                                   100.0 * comparison.unmatchedArea));
     show(a, reference, other, comparison, progress);
     if (!a.run.json.empty()) writeJson(reportOf(a, reference, other, comparison), a.run.json);
     fmt::print("{}", bakeComparisonText(comparison));

@@ -1,13 +1,9 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
-#include "cli/compare_bakes.h"
 #include "cli/compare_folder.h"
-#include "cli/compare_vpl.h"
-#include "cli/interrupt.h"
 #include "cli/scene_files.h"
 #include "cli/terminal_progress.h"
-#include "cli/terminal_text.h"
 #include "cli/validators.h"
 
 #include "comparison/form_factor_page.h"
@@ -104,16 +100,15 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     checkPageFolder(a.output, std::array{a.run.json}, inputs);
     requireGnuplot();
 
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     const Stopwatch watch;
     const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const MeshedScene scene = meshScene(read.scene, mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);
-    logLine(a.run, printable(fmt::format("{}: {} polygons, {} patches", a.scene.path.string(),
-                                         read.scene.polygons.size(), scene.mesh.size())));
+    logLine(a.run, fmt::format("{}: {} polygons, {} patches", a.scene.path.string(), read.scene.polygons.size(),
+                               scene.mesh.size()));
     options.onRun = [&](const std::string& what) { progress.setTitle(what); };
     const FormFactorComparison comparison = compareFormFactors(scene, options, progress);
 
@@ -133,7 +128,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     writePageFolder(a.output, std::move(files));
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", comparisonText(comparison));
-    logLine(a.run, printable(fmt::format("{}: open index.html in a browser", a.output.string())));
+    logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
     return ExitCode::Ok;
 }
 

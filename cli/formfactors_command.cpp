@@ -1,7 +1,6 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/formfactors_report.h"
-#include "cli/interrupt.h"
 #include "cli/overlap_text.h"
 #include "cli/points_file.h"
 #include "cli/scene_files.h"
@@ -96,7 +95,7 @@ struct Run {
 
     void warn(const std::string& text) {
         warnings.push_back(text);
-        warnLine(printable(text));
+        warnLine(text);
     }
     void setComment(const std::string& method) {
         comment = printable(fmt::format("scene {}, {}, {} patches, lambert {}", a.scene.path.string(), method,
@@ -122,7 +121,7 @@ void readAndMesh(Run& run) {
     const CoverReport& cover = run.scene.prepareReport.cover;
     if (const std::string overlaps = overlapText(*run.scene.scene, cover); !overlaps.empty()) {
         if (cover.takenAway)
-            logLine(run.a.run, printable(overlaps));
+            logLine(run.a.run, overlaps);
         else
             run.warn(overlaps);
     }
@@ -317,9 +316,8 @@ ExitCode formFactors(const FormFactorsArguments& a) {
     if (!source.transport.stored) throw UsageError("--storage none: is for solvers; form factors are a matrix");
     if (!a.temperatures.empty()) source.repair = true; // or flows do not add up
     checkFiles(a);
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     const Stopwatch total;
     Run run{a, source, progress};
     readAndMesh(run);

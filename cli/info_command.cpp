@@ -2,7 +2,6 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/info_report.h"
-#include "cli/interrupt.h"
 #include "cli/scene_facts.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
@@ -23,7 +22,6 @@ struct InfoArguments {
 ExitCode info(const InfoArguments& a) {
     checkTargets(std::array{a.run.json}, inputFiles(a.scene));
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const SceneFacts facts = gatherFacts(read.scene, progress);

@@ -2,14 +2,13 @@
 #include "cli/bake_report.h"
 #include "cli/bake_verdict.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "cli/points_file.h"
 #include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
-#include "cli/terminal_text.h"
 
 #include "baking/probe.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "core/whole_file.h"
 
@@ -59,9 +58,8 @@ ExitCode probe(const ProbeArguments& a) {
     addTransportInputs(a.transport, inputs);
     const auto& rows = a.transport.checkpoint;
     checkTargets(std::array{a.output, a.run.json, rows, solverCheckpointPath(rows)}, inputs);
-    applyThreads(a.run);
+    setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
-    const InterruptGuard interrupt(progress);
     const Stopwatch total;
     const std::vector<SensorPoint> points = readPoints(a.points);
     ReadResult read = readScene(a.scene, &progress);
@@ -69,7 +67,7 @@ ExitCode probe(const ProbeArguments& a) {
     const double readSeconds = total.seconds();
     logReport(a.run, read.report);
     const SolvedScene solved = solveScene(read.scene, options, progress);
-    for (const std::string& warning : solved.warnings) warnLine(printable(warning));
+    for (const std::string& warning : solved.warnings) warnLine(warning);
     const std::vector<ProbeReading> readings = probeIrradiance(solved, options, reconstructionOptions(a.transport),
                                                                pointsInScene(points, *solved.scene), progress);
     const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
@@ -82,7 +80,7 @@ ExitCode probe(const ProbeArguments& a) {
     else
         writeWholeFile(a.output, text);
     const BakeVerdict verdict = judge(options.method, solved);
-    for (const std::string& warning : verdict.warnings) warnLine(printable(warning));
+    for (const std::string& warning : verdict.warnings) warnLine(warning);
     if (!a.run.json.empty()) {
         auto report = bakeReport({solved, options, read.report, a.scene, a.transport, a.run, readSeconds,
                                   writing.seconds(), total.seconds()});

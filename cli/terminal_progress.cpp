@@ -5,9 +5,19 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <csignal>
+
 namespace lambert {
 
 namespace {
+
+std::atomic<Progress*> cancelledBySignals{nullptr};
+static_assert(std::atomic<Progress*>::is_always_lock_free);
+
+extern "C" void onSignal(int signal) {
+    if (Progress* progress = cancelledBySignals.load()) progress->cancel();
+    std::signal(signal, SIG_DFL);
+}
 
 constexpr std::chrono::milliseconds kUpdateInterval{100};
 constexpr std::size_t kLongestTitle = 32;
@@ -20,9 +30,18 @@ std::size_t terminalColumns() {
 
 } // namespace
 
-TerminalProgress::TerminalProgress(bool quiet) : visible_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+TerminalProgress::TerminalProgress(bool quiet) : visible_(!quiet && ::isatty(STDERR_FILENO) == 1) {
+    cancelledBySignals = this;
+    std::signal(SIGINT, onSignal);
+    std::signal(SIGTERM, onSignal);
+}
 
-TerminalProgress::~TerminalProgress() { clearLine(); }
+TerminalProgress::~TerminalProgress() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    cancelledBySignals = nullptr;
+    clearLine();
+}
 
 void TerminalProgress::setTitle(const std::string& title) {
     const std::lock_guard lock(mutex_);

@@ -10,6 +10,8 @@
 namespace lambert {
 
 /// A progress line on stderr: stage, done, total, rate, time left. Silent where stderr is no terminal, or if `quiet`.
+///
+/// While it lives, Ctrl-C (SIGINT) and SIGTERM cancel the computation; a second signal ends the process at once.
 class TerminalProgress : public Progress {
 public:
     explicit TerminalProgress(bool quiet);

@@ -2,9 +2,10 @@
 #include "cli/arguments.h"
 #include "cli/bake_report.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
+
+#include "core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +19,8 @@ namespace {
 
 ExitCode verify(const RunArguments& run) {
     checkTargets(std::array{run.json}, {});
-    applyThreads(run);
+    setThreadCount(run.threads);
     TerminalProgress progress(run.quiet);
-    const InterruptGuard interrupt(progress);
     const std::vector<AnalyticResult> results = runAnalyticCases(progress);
     nlohmann::ordered_json report = nlohmann::ordered_json::array();
     fmt::print("{:<54} {:>13} {:>13} {:>11}\n", "case", "expected", "found", "tolerance");
