@@ -5,13 +5,14 @@
 #include "core/error.h"
 #include "picture/image.h"
 #include "rendering/default_camera.h"
+#include "scene/words.h"
 
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -85,27 +86,28 @@ void addCameraArguments(CLI::App& command, PictureArguments& a) {
     command.add_option("--fov", a.fov, "Vertical field of view [45]")->type_name("DEGREES")->needs(eye);
 }
 
-namespace {
-
-/// Three finite numbers, separated by commas. Throws UsageError.
-template <typename Number>
-glm::vec<3, Number> parseNumbers(const std::string& text, const std::string& option) {
-    glm::vec<3, Number> result(0);
-    const char* at = text.data();
-    const char* const end = text.data() + text.size();
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto [next, error] = std::from_chars(at, end, result[axis]);
-        const bool separated = axis == 2 ? next == end : next != end && *next == ',';
-        if (error != std::errc() || !separated || !std::isfinite(result[axis]))
-            throw UsageError(fmt::format("{}: found \"{}\", expected three numbers like 1,2.5,-3", option, text));
-        at = next + 1;
-    }
-    return result;
+std::vector<std::string> separated(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    boost::split(parts, text, [=](char c) { return c == separator; });
+    return parts;
 }
 
-} // namespace
+std::optional<std::vector<double>> numbersOf(const std::string& text, char separator) {
+    std::vector<double> numbers;
+    for (const std::string& part : separated(text, separator)) {
+        const auto number = parseNumber(part);
+        if (!number || !std::isfinite(*number)) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
 
-glm::vec3 parseVector(const std::string& text, const std::string& option) { return parseNumbers<float>(text, option); }
+glm::dvec3 parseVector(const std::string& text, const std::string& option) {
+    const auto numbers = numbersOf(text);
+    if (!numbers || numbers->size() != 3)
+        throw UsageError(fmt::format("{}: found \"{}\", expected three numbers like 1,2.5,-3", option, text));
+    return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
 
 MeshOptions meshOptions(const TransportArguments& a) {
     MeshOptions options;
@@ -149,17 +151,13 @@ ReconstructionOptions reconstructionOptions(const TransportArguments& a) {
 namespace {
 
 std::array<int, 2> parseSize(const std::string& text) {
-    std::array<int, 2> size{};
-    const char* const end = text.data() + text.size();
-    const auto [middle, error] = std::from_chars(text.data(), end, size[0]);
-    bool good = error == std::errc() && middle != end && *middle == 'x';
-    if (good) {
-        const auto [last, secondError] = std::from_chars(middle + 1, end, size[1]);
-        good = secondError == std::errc() && last == end;
-    }
-    if (!good || size[0] < 1 || size[1] < 1 || size[0] > 32768 || size[1] > 32768)
+    const auto size = numbersOf(text, 'x');
+    const auto allowed = [](double pixels) {
+        return pixels >= 1.0 && pixels <= 32768.0 && pixels == std::floor(pixels);
+    };
+    if (!size || size->size() != 2 || !std::all_of(size->begin(), size->end(), allowed))
         throw UsageError(fmt::format("--size: found \"{}\", expected WIDTHxHEIGHT, each from 1 to 32768", text));
-    return size;
+    return {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
 }
 
 const Camera& namedCamera(const std::string& name, const Scene& scene) {
@@ -175,9 +173,9 @@ const Camera& namedCamera(const std::string& name, const Scene& scene) {
 /// The camera of --eye, whose places are the file's, in a scene with this origin.
 Camera typedCamera(const PictureArguments& a, const glm::dvec3& origin) {
     const auto place = [&](const std::string& text, const char* option) {
-        return glm::vec3(parseNumbers<double>(text, option) - origin);
+        return glm::vec3(parseVector(text, option) - origin);
     };
-    return lookAtCamera(place(a.eye, "--eye"), place(a.lookAt, "--look-at"), parseVector(a.up, "--up"),
+    return lookAtCamera(place(a.eye, "--eye"), place(a.lookAt, "--look-at"), glm::vec3(parseVector(a.up, "--up")),
                         static_cast<float>(a.fov.value_or(45.0)));
 }
 
@@ -199,7 +197,7 @@ void checkPicture(const PictureArguments& a) {
     parseSize(a.size);
     if (a.eye.empty()) return;
     // The scene's origin is not known yet, and far from it single precision might not tell the two places apart.
-    const auto eye = parseNumbers<double>(a.eye, "--eye"), lookAt = parseNumbers<double>(a.lookAt, "--look-at");
+    const glm::dvec3 eye = parseVector(a.eye, "--eye"), lookAt = parseVector(a.lookAt, "--look-at");
     const double apart = glm::distance(eye, lookAt);
     const bool farAway = apart > 0.0 && apart < 1e-3 * glm::length(eye);
     typedCamera(a, farAway ? eye : glm::dvec3(0.0));

@@ -134,8 +134,12 @@ double pictureRays(const PictureArguments& arguments);
 void checkPicture(const PictureArguments& arguments);
 void checkCamera(const PictureArguments& arguments, const Scene& scene);
 
+/// "a,b,c" as a, b and c.
+std::vector<std::string> separated(const std::string& text, char separator = ',');
+/// "1,2.5,-3" as numbers, which are finite; nothing for any other text.
+std::optional<std::vector<double>> numbersOf(const std::string& text, char separator = ',');
 /// "x,y,z" as a vector. Throws UsageError that names the option.
-glm::vec3 parseVector(const std::string& text, const std::string& option);
+glm::dvec3 parseVector(const std::string& text, const std::string& option);
 
 /// Log lines on stderr, made printable; the first not under --quiet.
 void logLine(const RunArguments& run, const std::string& line);

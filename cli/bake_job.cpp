@@ -12,12 +12,12 @@
 #include "prediction/measured_costs.h"
 #include "prediction/prediction.h"
 #include "rendering/render.h"
+#include "scene/words.h"
 #include "solver/solution_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -34,12 +34,10 @@ Quantity quantityOf(const BakeArguments& a) {
 /// The EV that was typed, none for auto. Throws UsageError.
 std::optional<float> typedExposure(const std::string& text) {
     if (text == "auto") return std::nullopt;
-    float value = 0.0F;
-    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || std::abs(value) > 100.0F)
+    const auto value = parseNumber(text);
+    if (!value || !(std::abs(*value) <= 100.0))
         throw UsageError(fmt::format("--exposure: found \"{}\", allowed are auto or an EV from -100 to 100", text));
-    return value;
+    return static_cast<float>(*value);
 }
 
 Image renderPicture(const BakedScene& baked, const Picture& shot, const BakeOutputOptions& output, Progress& progress) {

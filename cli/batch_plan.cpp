@@ -5,13 +5,13 @@
 #include "core/error.h"
 #include "scene/reading/scene_reader.h"
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <map>
 #include <set>
-#include <string_view>
 
 namespace lambert {
 
@@ -87,22 +87,13 @@ FoundScenes findScenes(const BakeArguments& a) {
     return found;
 }
 
-/// The pattern with every "{}" replaced.
-fs::path filePath(const fs::path& pattern, const std::string& name) {
-    constexpr std::string_view kName = "{}";
-    std::string path = pattern.string();
-    for (std::size_t at = path.find(kName); at != std::string::npos; at = path.find(kName, at + name.size()))
-        path.replace(at, kName.size(), name);
-    return path;
-}
-
 BakeJob jobOf(const BakeArguments& a, const fs::path& scene, const fs::path& common) {
     const fs::path name = absolutePath(scene).lexically_relative(common).replace_extension();
     const std::string format = a.format.empty() ? "glb" : a.format;
     BakeJob job;
     job.scene = scene;
-    if (!a.picture.path.empty()) job.image = filePath(a.picture.path, name.string());
-    if (!a.solution.empty()) job.solution = filePath(a.solution, name.string());
+    if (!a.picture.path.empty()) job.image = boost::replace_all_copy(a.picture.path.string(), "{}", name.string());
+    if (!a.solution.empty()) job.solution = boost::replace_all_copy(a.solution.string(), "{}", name.string());
     if (a.outputDir.empty()) return job;
     const auto target = [&](const std::string& extension) {
         return a.outputDir / fs::path(name.string() + "." + extension);

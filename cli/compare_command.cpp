@@ -51,7 +51,7 @@ std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
     if (a.methods == "all")
         for (const ComparedMethod& method : comparedMethods()) add(method);
     else
-        for (const std::string& name : commaSeparated(a.methods)) add(comparedMethod(name));
+        for (const std::string& name : separated(a.methods)) add(comparedMethod(name));
     for (const std::string& text : a.efforts) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos)
@@ -62,7 +62,7 @@ std::vector<Ladder> ladders(const CompareFormFactorsArguments& a) {
         if (ladder == result.end())
             throw UsageError(fmt::format("--efforts: {} is not among the compared methods", method.name));
         ladder->efforts.clear();
-        for (const std::string& effort : commaSeparated(text.substr(equals + 1)))
+        for (const std::string& effort : separated(text.substr(equals + 1)))
             ladder->efforts.push_back(parseEffort(method, effort));
     }
     return result;

@@ -12,17 +12,6 @@ namespace lambert {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> commaSeparated(const std::string& text) {
-    std::vector<std::string> result(1);
-    for (const char c : text) {
-        if (c == ',')
-            result.emplace_back();
-        else
-            result.back() += c;
-    }
-    return result;
-}
-
 std::string versionText() {
     const int threads = threadCount();
     return fmt::format("version {}, {} thread{}", LAMBERT_VERSION, threads, threads == 1 ? "" : "s");

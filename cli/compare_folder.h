@@ -11,9 +11,6 @@ namespace lambert {
 
 /// The folder that a comparison writes its page to.
 
-/// "a,b,c" as a, b and c.
-std::vector<std::string> commaSeparated(const std::string& text);
-
 /// What can keep the page from being written is found before the work: to be called before it. A folder that is missing is made
 /// after it. `others` are further files that will be written; empty ones are none. Throws UsageError, SystemError.
 void checkPageFolder(const std::filesystem::path& folder, std::span<const std::filesystem::path> others,

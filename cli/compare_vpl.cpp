@@ -78,7 +78,7 @@ std::vector<std::string> vplMethodNames() {
 }
 
 std::vector<Method> methods(const CompareVplArguments& a) {
-    std::vector<std::string> names = a.methods == "all" ? vplMethodNames() : commaSeparated(a.methods);
+    std::vector<std::string> names = a.methods == "all" ? vplMethodNames() : separated(a.methods);
     std::vector<Method> result;
     for (const std::string& name : names) {
         const auto found =

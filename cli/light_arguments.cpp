@@ -1,4 +1,5 @@
 #include "cli/light_arguments.h"
+#include "cli/arguments.h"
 #include "cli/validators.h"
 
 #include "core/error.h"
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -21,22 +21,6 @@ namespace {
 constexpr double kMostLight = 1e30;
 /// Of an overcast sky of which no sun tells how bright it is: a daylight factor of 1 % is then 100 lx.
 constexpr double kOvercastIlluminance = 10000.0;
-
-/// "1,2.5,-3"; nothing for any other text.
-std::optional<std::vector<double>> numbersOf(std::string_view text) {
-    std::vector<double> numbers;
-    const char* at = text.data();
-    const char* const end = text.data() + text.size();
-    while (true) {
-        double value = 0.0;
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-        numbers.push_back(value);
-        if (next == end) return numbers;
-        if (*next != ',') return std::nullopt;
-        at = next + 1;
-    }
-}
 
 bool areLight(const std::vector<double>& values, std::size_t from) {
     return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(from), values.end(),

@@ -28,7 +28,7 @@ NamedColour parseNamedColour(const std::string& setting, const std::string& opti
     const std::size_t separator = setting.rfind('=');
     if (separator == std::string::npos)
         throw UsageError(fmt::format("{}: found \"{}\", expected MATERIAL=r,g,b", option, setting));
-    const Rgb value = parseVector(setting.substr(separator + 1), option);
+    const Rgb value(parseVector(setting.substr(separator + 1), option));
     if (std::min({value.x, value.y, value.z}) < 0.0F || std::max({value.x, value.y, value.z}) > largest)
         throw UsageError(fmt::format("{}: found \"{}\", allowed are values from 0 to {:g}", option, setting, largest));
     return {setting.substr(0, separator), value};

@@ -2,11 +2,12 @@
 #include "cli/terminal_text.h"
 
 #include "core/error.h"
+#include "scene/words.h"
 
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <optional>
 
@@ -15,11 +16,6 @@ namespace lambert {
 namespace {
 
 constexpr double kHottest = 1e6; ///< kelvin
-
-std::string trimmed(const std::string& text) {
-    const auto begin = text.find_first_not_of(" \t\r");
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 /// The fields of a line of CSV (RFC 4180, one record a line).
 std::vector<std::string> fieldsOf(const std::string& line) {
@@ -36,15 +32,13 @@ std::vector<std::string> fieldsOf(const std::string& line) {
         else
             fields.back() += c;
     }
-    for (std::string& field : fields) field = trimmed(field);
+    for (std::string& field : fields) boost::trim(field);
     return fields;
 }
 
 std::optional<double> numberOf(const std::string& text, double largest) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    return whole && value >= 0.0 && value <= largest ? std::optional(value) : std::nullopt;
+    const auto value = parseNumber(text);
+    return value && *value >= 0.0 && *value <= largest ? value : std::nullopt;
 }
 
 } // namespace
@@ -60,7 +54,7 @@ Temperatures readTemperatures(const std::filesystem::path& path, const std::vect
     bool headerAllowed = true;
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
-        if (trimmed(line).empty() || line.front() == '#') continue;
+        if (boost::trim_copy(line).empty() || line.front() == '#') continue;
         const auto fail = [&](const std::string& what) {
             throw InputError(fmt::format("{}:{}: {}", path.string(), number, what));
         };

@@ -2,10 +2,10 @@
 #include "cli/validators.h"
 
 #include "core/error.h"
+#include "scene/words.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -67,12 +67,10 @@ void addInstantRadiosityArguments(CLI::App& command, TransportArguments& a) {
 
 double geometricBound(const std::string& text) {
     if (text == "none") return kUnbounded;
-    double bound = 0.0;
-    const char* const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, bound);
-    if (error != std::errc() || at != end || !(bound > 0.0) || !std::isfinite(bound))
+    const auto bound = parseNumber(text);
+    if (!bound || !(*bound > 0.0) || !std::isfinite(*bound))
         throw UsageError(fmt::format("--clamp: found \"{}\", allowed are numbers above 0 and none", text));
-    return bound;
+    return *bound;
 }
 
 bool usesVirtualLights(const TransportArguments& a) { return a.method == kInstantRadiosity; }

@@ -2,11 +2,11 @@
 
 #include "comparison/page/figure_text.h"
 #include "core/error.h"
+#include "scene/words.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace lambert {
@@ -65,12 +65,10 @@ std::string effortText(const ComparedMethod& method, double effort) {
 }
 
 double parseEffort(const ComparedMethod& method, const std::string& text) {
-    double effort = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), effort);
-    const bool whole = !(method.multiple > 0.0) || std::fmod(effort, method.multiple) == 0.0;
-    if (error == std::errc() && end == text.data() + text.size() && effort >= method.lowest &&
-        effort <= method.highest && whole)
-        return effort;
+    const auto effort = parseNumber(text);
+    if (effort && *effort >= method.lowest && *effort <= method.highest &&
+        (!(method.multiple > 0.0) || std::fmod(*effort, method.multiple) == 0.0))
+        return *effort;
     throw UsageError(fmt::format("{}, {}: found \"{}\", allowed is {:g} to {:.9g}{}", method.name, method.effortName,
                                  text, method.lowest, method.highest,
                                  method.multiple > 0.0 ? fmt::format(" in steps of {:g}", method.multiple) : ""));

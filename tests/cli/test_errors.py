@@ -53,7 +53,7 @@ class WrongOptions(ErrorTest):
                 "--bounces": ("-1", "abc"), "--threads": ("-1", "abc"), "--seed": ("-1", "abc"),
                 "--tolerance": ("-1", "nan", "2"), "--crease-angle": ("-1", "nan", "181"),
                 "--memory-limit": ("0", "nan"), "--unit": ("0", "-1", "nan", "inf"),
-                "--exposure": ("abc", "nan", "101", "1e-99"), "--method": ("magic",), "--quantity": ("happiness",),
+                "--exposure": ("abc", "nan", "101", "1e999"), "--method": ("magic",), "--quantity": ("happiness",),
                 "--format": ("doc",)}.items():
             for value in values:
                 self.assert_refused(option, value, says=option.strip("-").replace("-", " ").split()[0])
