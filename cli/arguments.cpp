@@ -205,7 +205,7 @@ void checkPicture(const PictureArguments& a) {
 
 Picture picture(const PictureArguments& a, const Scene& scene, const RayCaster& rays) {
     const auto [width, height] = parseSize(a.size);
-    Picture result{a.path, width, height, {}, a.samples};
+    Picture result{a.path, {width, height, a.samples}, {}};
     if (!a.eye.empty()) {
         result.camera = typedCamera(a, scene.origin);
     } else if (!a.camera.empty()) {

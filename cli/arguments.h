@@ -6,6 +6,7 @@
 #include "cli/scene_arguments.h"
 #include "lighting/quality.h"
 #include "picture/camera_rays.h"
+#include "rendering/render.h"
 #include "scene/reading.h"
 
 #include <CLI/CLI.hpp>
@@ -118,10 +119,8 @@ nlohmann::ordered_json repairJson(const std::optional<RepairReport>& repair);
 
 struct Picture {
     std::filesystem::path path;
-    int width = 0;
-    int height = 0;
+    PictureSize size;
     Camera camera;
-    int samples = 0;
 };
 
 /// The picture's size and camera: the named one, the one by --eye, the scene's first, or a default one.

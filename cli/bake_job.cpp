@@ -11,7 +11,6 @@
 #include "core/stopwatch.h"
 #include "prediction/measured_costs.h"
 #include "prediction/prediction.h"
-#include "rendering/render.h"
 #include "scene/words.h"
 #include "solver/solution_file.h"
 
@@ -41,10 +40,7 @@ std::optional<float> typedExposure(const std::string& text) {
 }
 
 Image renderPicture(const BakedScene& baked, const Picture& shot, const BakeOutputOptions& output, Progress& progress) {
-    RenderOptions options;
-    options.width = shot.width;
-    options.height = shot.height;
-    options.samplesPerAxis = shot.samples;
+    RenderOptions options{shot.size};
     options.quantity = output.quantity;
     if (imageFormatOf(shot.path) == ImageFormat::Png) options.toneMapExposure = output.exposure;
     return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);

@@ -24,8 +24,8 @@ Json cameraJson(const Picture& picture, const Scene& scene) {
             {"direction", jsonVector(glm::dvec3(camera.direction))},
             {"up", jsonVector(glm::dvec3(camera.up))},
             {"vertical_fov_degrees", static_cast<double>(camera.verticalFov) * 180.0 / std::numbers::pi},
-            {"width", picture.width},
-            {"height", picture.height}};
+            {"width", picture.size.width},
+            {"height", picture.size.height}};
 }
 
 Json optionsJson(const BakeReportInput& in) {

@@ -60,7 +60,6 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
         throw InputError(fmt::format("{}: no patch has any size: there is nothing to show", a.reference.string()));
     const RayCaster rays(*reference.meshed.scene);
     const Picture shot = picture(a.picture, *reference.meshed.scene, rays);
-    const PictureSize size{shot.width, shot.height, shot.samples};
     if (!a.output.empty()) {
         std::vector<FileContent> files = bakePage({a.reference.filename().string(),
                                                    a.other.filename().string(),
@@ -71,7 +70,7 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
                                                    {{"Lambert", fmt::format("version {}", LAMBERT_VERSION)}},
                                                    rays,
                                                    shot.camera,
-                                                   size},
+                                                   shot.size},
                                                   progress);
         files.push_back({"results.csv", bakeComparisonCsv(comparison)});
         files.push_back({"results.json", jsonText(reportOf(a, reference, other, comparison))});
@@ -80,7 +79,8 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
         logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
     }
     if (!a.picture.path.empty()) {
-        const DifferencePicture found = differencePicture(reference, comparison, rays, shot.camera, size, progress);
+        const DifferencePicture found =
+            differencePicture(reference, comparison, rays, shot.camera, shot.size, progress);
         writeImage(withScaleBar(found.image, found.scale), shot.path, 0.0F);
     }
 }

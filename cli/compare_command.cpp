@@ -120,7 +120,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
          comparison,
          {{"Seeds", fmt::format("{} per effort, from {}", a.seeds, a.run.seed)}, {"Lambert", versionText()}},
          shot.camera,
-         {shot.width, shot.height, 3}},
+         {shot.size.width, shot.size.height, 3}},
         progress);
     files.push_back({"results.csv", comparisonCsv(comparison, a.run.seed)});
     files.push_back({"results.json", jsonText(json)});

@@ -176,8 +176,7 @@ ExitCode compareVpl(const CompareVplArguments& a) {
 
     PictureOptions pictureOptions;
     pictureOptions.camera = shot.camera;
-    pictureOptions.width = shot.width;
-    pictureOptions.height = shot.height;
+    pictureOptions.size = shot.size;
     pictureOptions.gathering.seed = a.run.seed;
     const VplPictures pictures = comparePictures(scene, reference, options, pictureOptions, progress);
 

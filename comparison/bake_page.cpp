@@ -8,7 +8,6 @@
 #include "comparison/page/page_files.h"
 #include "comparison/page/scale_bar.h"
 #include "core/error.h"
-#include "rendering/render.h"
 
 #include <fmt/format.h>
 
@@ -97,12 +96,10 @@ private:
 
     HtmlFigure picture(const std::string& name, const std::string& title, const StoredSolution& solution,
                        const RayCaster& rays, std::optional<float>& exposure) {
-        const BakedMesh baked = reconstructAverage(solution.meshed.mesh, solution.meshed.optics, *solution.meshed.scene, solution.solution, {});
+        const BakedMesh baked = reconstructAverage(solution.meshed.mesh, solution.meshed.optics, *solution.meshed.scene,
+                                                   solution.solution, {});
         if (!exposure) exposure = automaticExposure(baked, in_.quantity);
-        RenderOptions options;
-        options.width = in_.size.width;
-        options.height = in_.size.height;
-        options.samplesPerAxis = in_.size.samplesPerAxis;
+        RenderOptions options{in_.size};
         options.quantity = in_.quantity;
         options.toneMapExposure = *exposure;
         Camera camera = in_.camera;

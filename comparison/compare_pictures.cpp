@@ -84,7 +84,7 @@ Image toneMapped(const Image& radiance, float exposure) {
 
 VplPictures comparePictures(const MeshedScene& scene, const RadiosityReference& reference,
                             const VplComparisonOptions& options, const PictureOptions& picture, Progress& progress) {
-    const PixelPoints pixels = pixelPoints(*scene.rays, picture.camera, picture.width, picture.height);
+    const PixelPoints pixels = pixelPoints(*scene.rays, picture.camera, picture.size.width, picture.size.height);
     VplPictures result;
     result.camera = picture.camera;
     options.onStage("reference's picture");
@@ -105,7 +105,8 @@ VplPictures comparePictures(const MeshedScene& scene, const RadiosityReference& 
     for (const auto& method : options.methods) {
         options.onStage(method->name() + ", picture");
         const Stopwatch watch;
-        const VplView view{pixels.receivers, PictureView{picture.camera, picture.width, picture.height, pixels.pixel}};
+        const VplView view{pixels.receivers,
+                           PictureView{picture.camera, picture.size.width, picture.size.height, pixels.pixel}};
         const MethodLight light = method->light(*scene.rays, view, options.effort, options.seed, progress);
         const double seconds = watch.seconds();
         result.methods.push_back(compared(pixels.picture(light.irradiance), result));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "comparison/compare_vpl.h"
+#include "rendering/render.h"
 
 #include <optional>
 #include <vector>
@@ -28,7 +29,7 @@ struct VplPictures {
 
 struct PictureOptions {
     Camera camera;
-    int width = 512, height = 512;
+    PictureSize size; //!< of which one sample per pixel
     PointGatherOptions gathering{.cells = 24, .emitterRays = 256, .skyRays = 256};
 };
 

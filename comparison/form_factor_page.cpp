@@ -6,7 +6,6 @@
 #include "comparison/page/html_page.h"
 #include "comparison/page/page_files.h"
 #include "comparison/page/scale_bar.h"
-#include "rendering/render.h"
 
 #include <fmt/format.h>
 
@@ -67,11 +66,9 @@ private:
         if (!of_.lit)
             return headlightPicture(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.rays, in_.camera, in_.size,
                                     progress_);
-        const BakedMesh baked = reconstructAverage(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.scene, of_.referenceSolution, {});
-        RenderOptions options;
-        options.width = in_.size.width;
-        options.height = in_.size.height;
-        options.samplesPerAxis = in_.size.samplesPerAxis;
+        const BakedMesh baked =
+            reconstructAverage(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.scene, of_.referenceSolution, {});
+        RenderOptions options{in_.size};
         options.toneMapExposure = automaticExposure(baked, Quantity::Radiosity);
         return renderBaked(in_.meshed.mesh, baked, *in_.meshed.rays, in_.camera, options, progress_);
     }

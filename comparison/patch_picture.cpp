@@ -1,7 +1,5 @@
 #include "comparison/patch_picture.h"
 
-#include "rendering/render.h"
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -39,10 +37,7 @@ BakedMesh flatMesh(const PatchMesh& mesh, std::span<const Rgb> colours) {
 /// The scene with each patch in one colour (#patches, linear display colours), on a neutral grey. Throws Cancelled.
 Image flatPicture(const PatchMesh& mesh, const RayCaster& rays, std::span<const Rgb> colours, const Camera& camera,
                   const PictureSize& size, Progress& progress) {
-    RenderOptions options;
-    options.width = size.width;
-    options.height = size.height;
-    options.samplesPerAxis = size.samplesPerAxis;
+    RenderOptions options{size};
     options.background = kGround;
     Image image = renderBaked(mesh, flatMesh(mesh, colours), rays, camera, options, progress);
     image.content = PixelContent::Display;

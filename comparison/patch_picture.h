@@ -3,17 +3,11 @@
 #include "comparison/page/colour_scale.h"
 #include "core/progress.h"
 #include "meshing/patch_optics.h"
-#include "picture/image.h"
-#include "scene/rays/ray_caster.h"
+#include "rendering/render.h"
 
 #include <span>
 
 namespace lambert {
-
-struct PictureSize {
-    int width = 512, height = 512; //!< pixels
-    int samplesPerAxis = 3;        //!< per pixel, see RenderOptions
-};
 
 /// The scene with each patch in its own grey, by how it is turned to the camera: for scenes without light.
 Image headlightPicture(const PatchMesh& mesh, const PatchOptics& optics, const RayCaster& rays, const Camera& camera,

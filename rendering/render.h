@@ -10,10 +10,12 @@
 
 namespace lambert {
 
-struct RenderOptions {
-    int width = 512;                         //!< pixels, >= 1
-    int height = 512;                        //!< pixels, >= 1
-    int samplesPerAxis = 4;                  //!< a pixel averages the square of it, stratified; 1 to 64
+struct PictureSize {
+    int width = 512, height = 512; //!< pixels, >= 1
+    int samplesPerAxis = 4;        //!< a pixel averages the square of it, stratified; 1 to 64
+};
+
+struct RenderOptions : PictureSize {
     Quantity quantity = Quantity::Radiosity; //!< what is shown; emitters show their radiosity in any case
     Rgb background{0.0F};                    //!< radiance where a ray leaves a scene that has no environment
     std::uint64_t seed = 0;                  //!< of the samples' places within a pixel
