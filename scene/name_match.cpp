@@ -1,5 +1,7 @@
 #include "scene/name_match.h"
 
+#include "core/text.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -10,13 +12,6 @@ namespace {
 
 constexpr std::size_t kComparedBytes = 64;
 constexpr std::size_t kComparedNames = 20'000; // more would take longer than the message is worth
-
-std::string comparable(std::string_view name) {
-    std::string result(name.substr(0, kComparedBytes));
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return result;
-}
 
 /// Letters changed, added or left out: V. Levenshtein's distance, by the table of R. Wagner and M. Fischer (1974), of which
 /// only one row is kept.
@@ -68,6 +63,7 @@ std::vector<std::uint32_t> matchingNames(std::span<const std::string> names, std
 }
 
 std::vector<std::string> closestNames(std::string_view wanted, std::span<const std::string> names, std::size_t count) {
+    const auto comparable = [](std::string_view name) { return lowerCase(name.substr(0, kComparedBytes)); };
     const std::string compared = comparable(wanted);
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const std::string& name : names.first(std::min(names.size(), kComparedNames)))

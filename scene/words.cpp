@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <limits>
@@ -33,6 +34,17 @@ std::string_view nextWord(std::string_view& text) {
     const std::string_view word = text.substr(0, end);
     text.remove_prefix(end);
     return word;
+}
+
+std::vector<std::string_view> wordsOf(std::string_view text) {
+    constexpr std::string_view kSpaces = " \t\v\f\r\n";
+    std::vector<std::string_view> words;
+    for (std::size_t begin = text.find_first_not_of(kSpaces); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(kSpaces, begin), text.size());
+        words.push_back(text.substr(begin, end - begin));
+        begin = text.find_first_not_of(kSpaces, end);
+    }
+    return words;
 }
 
 std::optional<double> parseNumber(std::string_view word) {

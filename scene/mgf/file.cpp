@@ -29,14 +29,7 @@ std::string placeIn(const std::string& file, std::size_t line) {
 } // namespace
 
 MgfEntity::MgfEntity(const std::string& file, std::size_t line, std::string_view text)
-    : file_(&file), line_(line), text_(text) {
-    std::size_t begin = text.find_first_not_of(kSpaces);
-    while (begin != std::string_view::npos) {
-        const std::size_t end = std::min(text.find_first_of(kSpaces, begin), text.size());
-        words_.push_back(text.substr(begin, end - begin));
-        begin = text.find_first_not_of(kSpaces, end);
-    }
-}
+    : file_(&file), line_(line), words_(wordsOf(text)) {}
 
 double MgfEntity::number(std::size_t k) const {
     const auto value = parseNumber(argument(k));

@@ -38,7 +38,6 @@ public:
 private:
     const std::string* file_;
     std::size_t line_;
-    std::string_view text_;
     std::vector<std::string_view> words_;
 };
 

@@ -3,13 +3,13 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "scene/named_file.h"
+#include "scene/words.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -55,11 +55,9 @@ ObjMaterials::ObjMaterials(SceneBuilder& builder, const ReadOptions& options, st
     : builder_(builder), options_(options), folder_(std::move(folder)), vertexColours_(vertexColours) {}
 
 void ObjMaterials::addLibraries(const std::string& argument) {
-    std::vector<std::string> names;
-    std::istringstream words(argument);
-    for (std::string word; words >> word;) names.push_back(word);
-    if (names.size() > 1 && isFile(argument)) names = {argument};
-    for (const std::string& name : names) addLibrary(name);
+    const std::vector<std::string_view> names = wordsOf(argument);
+    if (names.size() > 1 && isFile(argument)) return addLibrary(argument);
+    for (const std::string_view name : names) addLibrary(std::string(name));
 }
 
 /// Whether the scene's folder has this file, as namedFile finds it.

@@ -33,17 +33,6 @@ constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{{{"char", 
                                                                        {"float32", PlyType::Float32},
                                                                        {"float64", PlyType::Float64}}};
 
-std::vector<std::string_view> wordsOf(std::string_view text) {
-    constexpr std::string_view kSpaces = " \t\v\f\r";
-    std::vector<std::string_view> words;
-    for (std::size_t begin = text.find_first_not_of(kSpaces); begin != std::string_view::npos;) {
-        const std::size_t end = std::min(text.find_first_of(kSpaces, begin), text.size());
-        words.push_back(text.substr(begin, end - begin));
-        begin = text.find_first_not_of(kSpaces, end);
-    }
-    return words;
-}
-
 std::optional<std::size_t> findProperty(const std::vector<PlyProperty>& properties,
                                         std::initializer_list<std::string_view> names, bool isList) {
     for (const std::string_view name : names)
