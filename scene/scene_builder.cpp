@@ -121,24 +121,14 @@ void SceneBuilder::warnUnlessStrict(const std::string& text) {
     warn(text);
 }
 
-template <typename Read>
-std::uint32_t SceneBuilder::addTextureOnce(const std::string& key, Read&& read) {
-    const auto [entry, isNew] = textures_.try_emplace(key, kNone);
-    if (!isNew) return entry->second;
-    if (auto texture = read()) entry->second = addTexture(std::move(texture));
-    return entry->second;
-}
-
 std::uint32_t SceneBuilder::addTextureFile(const std::filesystem::path& folder, const std::string& name,
                                            TextureContent content, const std::string& replacement) {
-    return addTextureOnce(fmt::format("{} {}", static_cast<int>(content), (folder / name).string()),
-                          [&] { return readTextureFile(folder, name, content, replacement); });
-}
-
-std::uint32_t SceneBuilder::addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name,
-                                            TextureContent content, const std::string& replacement) {
-    return addTextureOnce(fmt::format("{} {}", static_cast<int>(content), name),
-                          [&] { return readTextureBytes(bytes, name, content, replacement); });
+    const std::string key = fmt::format("{} {}", static_cast<int>(content), (folder / name).string());
+    const auto [entry, isNew] = textures_.try_emplace(key, kNone);
+    if (!isNew) return entry->second;
+    if (auto texture = readTextureFile(folder, name, content, replacement))
+        entry->second = addTexture(std::move(texture));
+    return entry->second;
 }
 
 template <typename Read>
@@ -169,8 +159,6 @@ std::uint32_t SceneBuilder::addTexture(std::shared_ptr<const Texture> texture) {
     result_.scene.textures.push_back(std::move(texture));
     return static_cast<std::uint32_t>(result_.scene.textures.size() - 1);
 }
-
-const Texture& SceneBuilder::texture(std::uint32_t index) const { return *result_.scene.textures[index]; }
 
 void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node) {
     addPolygon(vertices, material, node, {});
@@ -219,7 +207,7 @@ bool SceneBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c
     Polygon triangle{{corners_[a], corners_[b], corners_[c], kNone}, material_, node_};
     if (!hasArea(result_.scene, triangle)) return false;
     triangle.surface = cornerSurface(a, b, c, kNone);
-    append(triangle);
+    result_.scene.polygons.push_back(triangle);
     return true;
 }
 
@@ -229,8 +217,6 @@ void SceneBuilder::growBounds(std::span<const std::uint32_t> vertices) {
         bounds_.add(glm::dvec3(result_.scene.positions[vertex]) + rounding);
     }
 }
-
-void SceneBuilder::append(const Polygon& polygon) { result_.scene.polygons.push_back(polygon); }
 
 /// The surface of a polygon with these corners, into Scene::surfaces.
 std::uint32_t SceneBuilder::cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -261,7 +247,7 @@ bool SceneBuilder::addQuad() {
     const double diagonal13 = glm::distance(points[1], points[3]);
     if (offPlane(points, normal) <= kMaxOffPlane * std::max(diagonal02, diagonal13)) {
         quad.surface = cornerSurface(0, 1, 2, 3);
-        append(quad);
+        result_.scene.polygons.push_back(quad);
         return true;
     }
 

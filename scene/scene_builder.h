@@ -61,18 +61,14 @@ public:
     /// `name` is as the scene's file has it, relative to `folder`.
     std::uint32_t addTextureFile(const std::filesystem::path& folder, const std::string& name, TextureContent content,
                                  const std::string& replacement);
-    /// The same for an image inside the scene's file.
-    std::uint32_t addTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name, TextureContent content,
-                                  const std::string& replacement);
-    /// The same images without adding them; null where the functions above return kNone.
+    /// The same image without adding it; null where the function above returns kNone.
     std::shared_ptr<const Texture> readTextureFile(const std::filesystem::path& folder, const std::string& name,
                                                    TextureContent content, const std::string& replacement);
+    /// The same of an image inside the scene's file.
     std::shared_ptr<const Texture> readTextureBytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                                     TextureContent content, const std::string& replacement);
     /// Adds an image that a reader made.
     std::uint32_t addTexture(std::shared_ptr<const Texture> texture);
-    /// An image added before.
-    const Texture& texture(std::uint32_t index) const;
 
     /// Adds a polygon of the file, front counter-clockwise; the indices are what the other functions
     /// returned. Polygons with non-finite coordinates or without area are dropped; convex planar quads stay
@@ -111,13 +107,10 @@ private:
     bool addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c); //!< into corners_
     bool addQuad();
     bool addSplit();
-    void append(const Polygon& polygon);
     void growBounds(std::span<const std::uint32_t> vertices);
     void warnOfRounding();
 
     std::uint32_t cornerSurface(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
-    template <typename Read>
-    std::uint32_t addTextureOnce(const std::string& key, Read&& read);
     template <typename Read>
     std::shared_ptr<const Texture> textureOrNull(const std::string& name, const std::string& replacement, Read&& read);
 

@@ -1,6 +1,7 @@
 #include "scene/mgf/geometry.h"
 
 #include "core/text.h"
+#include "scene/polygon_shape.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -23,15 +24,6 @@ bool touchesItself(const std::vector<glm::dvec3>& corners) {
             sorted.push_back({corners[k].x, corners[k].y, corners[k].z});
     std::sort(sorted.begin(), sorted.end());
     return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
-}
-
-/// Newell's normal, of unit length or 0.
-glm::dvec3 unitNormal(const std::vector<glm::dvec3>& corners) {
-    glm::dvec3 sum(0.0);
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
-        sum += glm::cross(corners[k] - corners[0], corners[k + 1] - corners[0]);
-    const double length = glm::length(sum);
-    return length > 0.0 ? sum / length : glm::dvec3(0.0);
 }
 
 /// The names for a message: the first three.
@@ -102,8 +94,9 @@ void MgfGeometry::addPrism(const MgfEntity& entity) {
     if (length == 0.0) entity.fail(entity.argument(count), "a length other than 0");
     std::vector<glm::dvec3> base;
     for (std::size_t k = 0; k < count; ++k) base.push_back(vertex(entity, k).point);
-    const glm::dvec3 normal = unitNormal(base);
-    if (normal == glm::dvec3(0.0)) entity.fail("prism with a base that has an area");
+    const glm::dvec3 area = newellNormal(base);
+    if (!(glm::length(area) > 0.0)) entity.fail("prism with a base that has an area");
+    const glm::dvec3 normal = area / glm::length(area);
 
     // The base looks along its normal, and the prism extends to the other side; a negative length turns all inside out.
     std::vector<glm::dvec3> end;

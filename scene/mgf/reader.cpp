@@ -255,9 +255,6 @@ private:
 } // namespace
 
 ReadResult readMgf(const std::filesystem::path& path, const ReadOptions& options) {
-    if (!(options.metresPerUnit > 0.0) || !std::isfinite(options.metresPerUnit))
-        throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
-                                     options.metresPerUnit));
     if (options.curveSegments < 4 || options.curveSegments > 1024 || options.curveSegments % 2 != 0)
         throw UsageError(
             fmt::format("--curve-segments: found {}, allowed are even numbers from 4 to 1024", options.curveSegments));
