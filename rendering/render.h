@@ -23,7 +23,7 @@ struct RenderOptions : PictureSize {
     /// EV at which every sample is tone-mapped before a pixel averages them: the picture is then of display
     /// colours. Without it the picture is of radiance, and edges of bright lights stay jagged when it is
     /// tone-mapped later.
-    std::optional<float> toneMapExposure;
+    std::optional<float> toneMapExposure{};
 };
 
 /// A picture of a baked mesh by ray casting. `mesh` is the division of `caster`'s scene, face i of `baked`

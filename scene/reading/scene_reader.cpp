@@ -51,13 +51,23 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
         throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
                                      options.metresPerUnit));
     if (const Reader* reader = readerOf(path)) {
-        ReadResult result = reader->read(path, options);
+        std::vector<std::filesystem::path> files;
+        ReadOptions told = options;
+        told.onFile = [&](const std::filesystem::path& file) {
+            options.onFile(file);
+            files.push_back(file);
+        };
+        told.onFile(path);
+        ReadResult result = reader->read(path, told);
         const glm::dvec3 needed = result.report.neededOrigin;
-        if (needed == glm::dvec3(0.0)) return result;
-        result = {};
-        ReadOptions placed = options;
-        placed.origin = needed;
-        return reader->read(path, placed);
+        if (needed != glm::dvec3(0.0)) {
+            result = {};
+            ReadOptions placed = options;
+            placed.origin = needed;
+            result = reader->read(path, placed);
+        }
+        result.report.files = std::move(files);
+        return result;
     }
     throw InputError(fmt::format("{}: found the extension {}, allowed are {}", path.string(),
                                  inQuotes(path.extension().string()), sceneExtensions()));
