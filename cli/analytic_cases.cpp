@@ -21,16 +21,24 @@ void add(Results& results, std::string name, double expected, double found, doub
     results.push_back({std::move(name), expected, found, tolerance});
 }
 
+/// By hemicubes, of the default resolution if none is given.
+SolvedScene solveCase(const Scene& scene, std::size_t patches, std::optional<int> resolution, std::uint64_t seed,
+                      Progress& progress) {
+    FormFactorLight method;
+    method.formFactors.transport.resolution = resolution;
+    method.formFactors.transport.seed = seed;
+    method.solver.tolerance = 1e-7;
+    SolveOptions options;
+    options.mesh.patches = patches;
+    options.method = method;
+    return solveScene(scene, options, progress);
+}
+
 /// B = B_e / (1 − ρ) in a closed box of one material.
 void furnace(Results& results, Progress& progress) {
     const Material wall = greyMaterial("wall", 0.5F, 1.0F);
-    FormFactorLight method;
-    method.solver.tolerance = 1e-7;
-    SolveOptions options;
-    options.mesh.patches = 1000;
-    options.method = method;
-    const SolvedScene solved =
-        solveScene(boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall}), options, progress);
+    const Scene box = boxScene({2.0F, 1.5F, 1.0F}, {wall, wall, wall, wall, wall, wall});
+    const SolvedScene solved = solveCase(box, 1000, std::nullopt, 1, progress);
     double lowest = 1e30;
     double highest = 0.0;
     for (const RgbSum& b : solved.solution.radiosity) {
@@ -52,13 +60,7 @@ void cube6(Results& results, Progress& progress) {
     constexpr std::array emitted{0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.25F};
     std::array<Material, 6> materials;
     for (std::size_t i = 0; i < 6; ++i) materials[i] = greyMaterial(fmt::format("f{}", i), reflectance[i], emitted[i]);
-    FormFactorLight method;
-    method.formFactors.transport.resolution = 128;
-    method.solver.tolerance = 1e-7;
-    SolveOptions options;
-    options.mesh.patches = 3456;
-    options.method = method;
-    const SolvedScene solved = solveScene(boxScene(glm::vec3(1.0F), materials), options, progress);
+    const SolvedScene solved = solveCase(boxScene(glm::vec3(1.0F), materials), 3456, 128, 1, progress);
     std::array<double, 6> sum{};
     std::array<double, 6> area{};
     for (std::size_t i = 0; i < solved.mesh.size(); ++i) {
@@ -77,14 +79,8 @@ double energyImbalance(std::size_t patches, int resolution, Progress& progress) 
     constexpr std::uint64_t kSeeds = 6;
     double squares = 0.0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-        FormFactorLight method;
-        method.formFactors.transport.resolution = resolution;
-        method.formFactors.transport.seed = seed;
-        method.solver.tolerance = 1e-7;
-        SolveOptions options;
-        options.mesh.patches = patches;
-        options.method = method;
-        const double imbalance = solveScene(roomWithBoxScene(), options, progress).solution.energy.imbalance();
+        const SolvedScene room = solveCase(roomWithBoxScene(), patches, resolution, seed, progress);
+        const double imbalance = room.solution.energy.imbalance();
         squares += imbalance * imbalance;
     }
     return std::sqrt(squares / static_cast<double>(kSeeds));
