@@ -61,22 +61,19 @@ void show(const CompareBakesArguments& a, const StoredSolution& reference, const
     const RayCaster rays(*reference.meshed.scene);
     const Picture shot = picture(a.picture, *reference.meshed.scene, rays);
     if (!a.output.empty()) {
-        std::vector<FileContent> files = bakePage({a.reference.filename().string(),
-                                                   a.other.filename().string(),
-                                                   reference,
-                                                   other,
-                                                   quantityOf(a),
-                                                   comparison,
-                                                   {{"Lambert", fmt::format("version {}", LAMBERT_VERSION)}},
-                                                   rays,
-                                                   shot.camera,
-                                                   shot.size},
-                                                  progress);
-        files.push_back({"results.csv", bakeComparisonCsv(comparison)});
-        files.push_back({"results.json", jsonText(reportOf(a, reference, other, comparison))});
-        progress.throwIfCancelled();
-        writePageFolder(a.output, std::move(files));
-        logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
+        std::vector<FileContent> page = bakePage({a.reference.filename().string(),
+                                                  a.other.filename().string(),
+                                                  reference,
+                                                  other,
+                                                  quantityOf(a),
+                                                  comparison,
+                                                  {{"Lambert", fmt::format("version {}", LAMBERT_VERSION)}},
+                                                  rays,
+                                                  shot.camera,
+                                                  shot.size},
+                                                 progress);
+        writePageFolder(a.run, a.output, std::move(page), bakeComparisonCsv(comparison),
+                        reportOf(a, reference, other, comparison), progress);
     }
     if (!a.picture.path.empty()) {
         const DifferencePicture found =

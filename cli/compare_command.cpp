@@ -114,7 +114,7 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
 
     progress.setTitle("page");
     const nlohmann::ordered_json json = report(a, read.report, scene, comparison, watch.seconds());
-    std::vector<FileContent> files = formFactorPage(
+    std::vector<FileContent> page = formFactorPage(
         {a.scene.path.filename().string(),
          scene,
          comparison,
@@ -122,13 +122,9 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
          shot.camera,
          {shot.size.width, shot.size.height, 3}},
         progress);
-    files.push_back({"results.csv", comparisonCsv(comparison, a.run.seed)});
-    files.push_back({"results.json", jsonText(json)});
-    progress.throwIfCancelled();
-    writePageFolder(a.output, std::move(files));
+    writePageFolder(a.run, a.output, std::move(page), comparisonCsv(comparison, a.run.seed), json, progress);
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", comparisonText(comparison));
-    logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
     return ExitCode::Ok;
 }
 

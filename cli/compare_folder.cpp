@@ -1,5 +1,6 @@
 #include "cli/compare_folder.h"
 
+#include "cli/bake_report.h"
 #include "cli/targets.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -30,12 +31,17 @@ std::vector<fs::path> checkPageFolder(const fs::path& folder, std::span<const fs
     return targets;
 }
 
-void writePageFolder(const fs::path& folder, std::vector<FileContent> files) {
+void writePageFolder(const RunArguments& run, const fs::path& folder, std::vector<FileContent> page, std::string csv,
+                     const nlohmann::ordered_json& results, const Progress& progress) {
+    page.push_back({"results.csv", std::move(csv)});
+    page.push_back({"results.json", jsonText(results)});
+    progress.throwIfCancelled();
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw SystemError(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
-    for (FileContent& file : files) file.path = folder / file.path;
-    writeWholeFiles(files);
+    for (FileContent& file : page) file.path = folder / file.path;
+    writeWholeFiles(page);
+    logLine(run, fmt::format("{}: open index.html in a browser", folder.string()));
 }
 
 } // namespace lambert

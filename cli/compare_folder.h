@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cli/arguments.h"
+#include "core/progress.h"
 #include "core/whole_file.h"
 
 #include <filesystem>
@@ -21,7 +23,9 @@ std::vector<std::filesystem::path> checkPageFolder(const std::filesystem::path& 
 /// Which Lambert compared, and on how many threads, for the page.
 std::string versionText();
 
-/// All files of the folder, their paths within it, or none. Throws SystemError.
-void writePageFolder(const std::filesystem::path& folder, std::vector<FileContent> files);
+/// Writes all files of the folder or none: a page with paths within it, results.csv, results.json. Then logs where. Throws
+/// SystemError, Cancelled.
+void writePageFolder(const RunArguments& run, const std::filesystem::path& folder, std::vector<FileContent> page,
+                     std::string csv, const nlohmann::ordered_json& results, const Progress& progress);
 
 } // namespace lambert

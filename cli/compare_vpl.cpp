@@ -182,20 +182,16 @@ ExitCode compareVpl(const CompareVplArguments& a) {
 
     progress.setTitle("page");
     const nlohmann::ordered_json json = report(a, read.report, scene, comparison, pictures, watch.seconds());
-    std::vector<FileContent> files =
+    std::vector<FileContent> page =
         vplPage({a.scene.path.filename().string(),
                  scene,
                  comparison,
                  pictures,
                  {{"Seeds", fmt::format("{} each, from {}", a.seeds, a.run.seed)}, {"Lambert", versionText()}}},
                 progress);
-    files.push_back({"results.csv", vplComparisonCsv(comparison, a.run.seed)});
-    files.push_back({"results.json", jsonText(json)});
-    progress.throwIfCancelled();
-    writePageFolder(a.output, std::move(files));
+    writePageFolder(a.run, a.output, std::move(page), vplComparisonCsv(comparison, a.run.seed), json, progress);
     if (!a.run.json.empty()) writeJson(json, a.run.json);
     fmt::print("{}", vplComparisonText(comparison));
-    logLine(a.run, fmt::format("{}: open index.html in a browser", a.output.string()));
     return judgeReference(reference.imbalance());
 }
 
