@@ -8,22 +8,10 @@
 #include "scene/named_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace lambert {
 
 namespace {
-
-using nlohmann::json;
-
-/// A buffer whose views are all compressed has no data of its own.
-bool isFallback(const json& buffer) {
-    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-        const json::json_pointer pointer(fmt::format("/extensions/{}/fallback", name));
-        if (buffer.contains(pointer) && buffer[pointer] == true) return true;
-    }
-    return false;
-}
 
 std::vector<unsigned char> fileContent(const std::string& file, const std::string& member,
                                        const std::filesystem::path& folder, const std::string& uri,
@@ -45,17 +33,16 @@ std::vector<unsigned char> fileContent(const std::string& file, const std::strin
 } // namespace
 
 std::vector<gltf::Buffer> readGltfBuffers(const std::string& file, const std::filesystem::path& folder,
-                                          const GltfContainer& container, const json& document,
-                                          const ReadOptions& options) {
+                                          const GltfContainer& container,
+                                          const std::vector<gltf::BufferSource>& sources, const ReadOptions& options) {
     std::vector<gltf::Buffer> buffers;
-    if (!document.contains("buffers")) return buffers;
-    for (const json& source : document["buffers"]) {
+    for (const gltf::BufferSource& source : sources) {
         gltf::Buffer& buffer = buffers.emplace_back();
-        if (isFallback(source)) continue;
+        if (source.isFallback) continue;
         const std::size_t index = buffers.size() - 1;
         const std::string place = fmt::format("/buffers/{}", index);
-        if (source.contains("uri")) {
-            const auto uri = source["uri"].get<std::string>();
+        if (source.uri) {
+            const std::string& uri = *source.uri;
             if (isDataUri(uri)) {
                 auto data = dataOfUri(uri);
                 if (!data) failAtMember(file, place + "/uri", inQuotes(uri), "a data URI in base64");
@@ -68,9 +55,8 @@ std::vector<gltf::Buffer> readGltfBuffers(const std::string& file, const std::fi
         } else {
             failAtMember(file, place + "/uri", "nothing", "a file or data URI");
         }
-        const auto length = source["byteLength"].get<std::uint64_t>();
-        if (length < 1 || length > buffer.size())
-            failAtMember(file, place + "/byteLength", std::to_string(length),
+        if (source.byteLength < 1 || source.byteLength > buffer.size())
+            failAtMember(file, place + "/byteLength", std::to_string(source.byteLength),
                          fmt::format("1 to {}, the bytes that are there", buffer.size()));
     }
     return buffers;

@@ -4,8 +4,6 @@
 #include "scene/gltf/model.h"
 #include "scene/reading.h"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -14,12 +12,12 @@
 
 namespace lambert {
 
-/// The content of all buffers of the document: of the .glb, of data URIs and of files named relative to `folder`. Empty
+/// The content of all buffers of a document: of the .glb, of data URIs and of files named relative to `folder`. Empty
 /// where the buffer only stands for decompressed data. Throws InputError with `file` and the JSON path if one is
 /// missing, outside of what `options` allow, or shorter than its `byteLength`.
 std::vector<gltf::Buffer> readGltfBuffers(const std::string& file, const std::filesystem::path& folder,
-                                          const GltfContainer& container, const nlohmann::json& document,
-                                          const ReadOptions& options);
+                                          const GltfContainer& container,
+                                          const std::vector<gltf::BufferSource>& sources, const ReadOptions& options);
 
 /// `length` bytes of a buffer from `offset` on. `place` is the JSON path of the object that holds these numbers and the
 /// buffer's index. Throws InputError if they are not all there.

@@ -4,7 +4,6 @@
 #include "core/input_file.h"
 #include "core/text.h"
 #include "scene/gltf/buffers.h"
-#include "scene/gltf/schema.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -58,7 +57,7 @@ json parseJson(const std::string& file, std::string_view text, json* extras) {
 /// Before all else: the members of glTF 1.0 have other types, which are not what is wrong with such a file.
 void requireVersion2(const std::string& file, const json& document) {
     const json::json_pointer member("/asset/version");
-    if (!document.is_object() || !document.contains(member)) return; // checkGltfMembers says so
+    if (!document.is_object() || !document.contains(member)) return; // modelOf says so
     const json& version = document.at(member);
     const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
     if ((version.is_string() || version.is_number()) && !text.starts_with("2."))
@@ -88,10 +87,8 @@ gltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& 
     const GltfContainer container = unpackGltf(file, content);
     const json document = parseJson(file, container.jsonText, extras);
     requireVersion2(file, document);
-    checkGltfMembers(file, document);
-
-    gltf::Model model = gltf::modelOf(document);
-    model.buffers = readGltfBuffers(file, gltfFolder(path), container, document, options);
+    gltf::Model model = gltf::modelOf(file, document);
+    model.buffers = readGltfBuffers(file, gltfFolder(path), container, model.bufferSources, options);
     return model;
 }
 

@@ -13,7 +13,7 @@
 namespace lambert {
 
 /// Reads a .gltf or .glb file with its buffers, and checks the container, the nesting and the type of every member that is
-/// used (checkGltfMembers). Images are named but not read. The `extras` of the whole file, as they stand, go to where the
+/// used (modelOf). Images are named but not read. The `extras` of the whole file, as they stand, go to where the
 /// last argument points. Throws InputError with the file and, for the JSON part, the path of the member.
 gltf::Model loadGltfModel(const std::filesystem::path& path, const ReadOptions& options,
                           nlohmann::json* extras = nullptr);

@@ -18,6 +18,13 @@ namespace lambert::gltf {
 
 using Buffer = std::vector<unsigned char>; ///< its bytes
 
+/// Where they come from.
+struct BufferSource {
+    std::optional<std::string> uri{};
+    std::size_t byteLength = 0;
+    bool isFallback = false; //!< all its views are compressed: it has no data of its own
+};
+
 /// Of a compressed buffer view (EXT_meshopt_compression).
 struct Meshopt {
     std::string extension; //!< its name in the file
@@ -158,7 +165,8 @@ struct Scene {
 
 struct Model {
     std::vector<std::string> extensionsRequired;
-    std::vector<Buffer> buffers;
+    std::vector<BufferSource> bufferSources;
+    std::vector<Buffer> buffers; //!< those, then decompressed ones
     std::vector<BufferView> bufferViews;
     std::vector<Accessor> accessors;
     std::vector<Mesh> meshes;
@@ -173,7 +181,8 @@ struct Model {
     int scene = -1;
 };
 
-/// All but the buffers of a document that checkGltfMembers has passed.
-Model modelOf(const nlohmann::json& document);
+/// All of a document but what its buffers hold. Checks that every member that is used has the right type, and that required ones
+/// are there: throws InputError with `file` and the JSON path. Does not check that an index is below the length of its list.
+Model modelOf(const std::string& file, const nlohmann::json& document);
 
 } // namespace lambert::gltf
