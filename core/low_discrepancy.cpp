@@ -3,6 +3,8 @@
 #include "core/random.h"
 #include "core/vector_clones.h"
 
+#include <boost/math/special_functions/prime.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,16 +13,6 @@
 namespace lambert {
 
 namespace {
-
-std::array<std::uint32_t, kPrimes> firstPrimes() {
-    std::array<std::uint32_t, kPrimes> primes{};
-    std::uint32_t count = 0;
-    for (std::uint32_t candidate = 2; count < kPrimes; ++candidate) {
-        const auto divides = [candidate](std::uint32_t p) { return candidate % p == 0; };
-        if (std::none_of(primes.begin(), primes.begin() + count, divides)) primes[count++] = candidate;
-    }
-    return primes;
-}
 
 /// Primitive polynomials and initial direction numbers of dimensions 1 to 15: Joe, Kuo 2008, "new-joe-kuo-6".
 struct Direction {
@@ -78,12 +70,6 @@ std::uint64_t scaled(std::uint32_t bits, std::uint32_t count) { return (std::uin
 
 } // namespace
 
-std::uint32_t prime(std::uint32_t k) {
-    static const auto primes = firstPrimes();
-    assert(k < kPrimes);
-    return primes[k];
-}
-
 double radicalInverse(std::uint32_t base, std::uint64_t index) {
     // As an integer while it fits: the division at the end rounds once.
     std::uint64_t mirrored = 0;
@@ -96,10 +82,12 @@ double radicalInverse(std::uint32_t base, std::uint64_t index) {
     return static_cast<double>(mirrored) / static_cast<double>(scale);
 }
 
-double halton(std::uint64_t index, std::uint32_t dimension) { return radicalInverse(prime(dimension), index); }
+double halton(std::uint64_t index, std::uint32_t dimension) {
+    return radicalInverse(boost::math::prime(dimension), index);
+}
 
 double scrambledHalton(std::uint64_t index, std::uint32_t dimension, std::uint64_t seed) {
-    const std::uint32_t base = prime(dimension);
+    const std::uint32_t base = boost::math::prime(dimension);
     const std::uint64_t key = mixed(seed + dimension);
     std::uint64_t mirrored = 0;
     std::uint64_t scale = 1;

@@ -9,14 +9,11 @@ namespace lambert {
 /// Low-discrepancy sequences. "Index" counts from 0; index 0 of all of them is the origin, so quasi-random walks that
 /// must not start there count from 1.
 
-/// The `k`-th prime, k = 0 being 2; k < kPrimes.
-inline constexpr std::uint32_t kPrimes = 256;
-std::uint32_t prime(std::uint32_t k);
-
 /// Φ_b(index): the index's digits in base b >= 2, mirrored at the point. In [0, 1).
 double radicalInverse(std::uint32_t base, std::uint64_t index);
 
 /// Coordinate `dimension` < kPrimes of the Halton sequence: the radical inverse in the dimension's prime.
+inline constexpr std::uint32_t kPrimes = 256;
 double halton(std::uint64_t index, std::uint32_t dimension);
 
 /// The same with the digits permuted at random, each permutation chosen by the digits before it (after Owen 1995): any point
