@@ -1,40 +1,29 @@
 #include "cli/points_file.h"
+#include "cli/arguments.h"
 #include "cli/terminal_text.h"
 
 #include "core/error.h"
+#include "scene/words.h"
 
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string>
-#include <string_view>
 
 namespace lambert {
 
 namespace {
 
-/// The first six numbers of a line, separated by commas and blanks; fewer if something else comes.
-std::vector<double> leadingNumbers(std::string_view line) {
+/// The numbers that a line begins with, separated by commas; at most six.
+std::vector<double> leadingNumbers(const std::string& line) {
     std::vector<double> numbers;
-    const auto skip = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size())); };
-    for (skip(); numbers.size() < 6; skip()) {
-        double value = 0.0;
-        if (line.starts_with('+')) line.remove_prefix(1);
-        const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-        if (error != std::errc()) break;
-        numbers.push_back(value);
-        line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-        skip();
-        if (line.empty()) break;
-        if (line.front() != ',') {
-            numbers.clear(); // something hangs on the number
-            break;
-        }
-        line.remove_prefix(1);
+    for (const std::string& field : separated(line)) {
+        const auto number = parseNumber(boost::trim_copy(field));
+        if (!number || numbers.size() == 6) break;
+        numbers.push_back(*number);
     }
     return numbers;
 }
@@ -58,7 +47,7 @@ std::vector<SensorPoint> readPoints(const std::filesystem::path& path) {
     std::string line;
     bool headerAllowed = true;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
+        if (boost::trim_copy(line).empty() || line.front() == '#') continue;
         const std::vector<double> numbers = leadingNumbers(line);
         const std::string place = fmt::format("{}:{}", path.string(), number);
         if (numbers.size() == 6)
