@@ -5,13 +5,19 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lambert {
 
 namespace {
 
-constexpr std::array kStatuses{BatchStatus::Baked,  BatchStatus::Predicted,   BatchStatus::Skipped,
-                               BatchStatus::Failed, BatchStatus::Interrupted, BatchStatus::NotRun};
+using NamedStatus = std::pair<BatchStatus, const char*>;
+constexpr std::array kStatuses{NamedStatus{BatchStatus::Baked, "baked"},
+                               NamedStatus{BatchStatus::Predicted, "predicted"},
+                               NamedStatus{BatchStatus::Skipped, "skipped"},
+                               NamedStatus{BatchStatus::Failed, "failed"},
+                               NamedStatus{BatchStatus::Interrupted, "interrupted"},
+                               NamedStatus{BatchStatus::NotRun, "not run"}};
 
 std::string rowText(const BatchRow& row) {
     const BakeOutcome& o = row.outcome;
@@ -31,23 +37,7 @@ std::string rowText(const BatchRow& row) {
 
 } // namespace
 
-const char* nameOf(BatchStatus status) {
-    switch (status) {
-    case BatchStatus::NotRun:
-        return "not run";
-    case BatchStatus::Baked:
-        return "baked";
-    case BatchStatus::Skipped:
-        return "skipped";
-    case BatchStatus::Predicted:
-        return "predicted";
-    case BatchStatus::Failed:
-        return "failed";
-    case BatchStatus::Interrupted:
-        return "interrupted";
-    }
-    return "";
-}
+const char* nameOf(BatchStatus status) { return std::ranges::find(kStatuses, status, &NamedStatus::first)->second; }
 
 std::string batchTable(const std::vector<BakeJob>& jobs, const std::vector<BatchRow>& rows, double seconds) {
     std::size_t width = 5;
@@ -59,10 +49,10 @@ std::string batchTable(const std::vector<BakeJob>& jobs, const std::vector<Batch
 
     text += fmt::format("{} scene{}", rows.size(), rows.size() == 1 ? "" : "s");
     const char* separator = ": ";
-    for (const BatchStatus status : kStatuses) {
+    for (const auto& [status, name] : kStatuses) {
         const auto count = std::ranges::count(rows, status, &BatchRow::status);
         if (count == 0) continue;
-        text += fmt::format("{}{} {}", separator, count, nameOf(status));
+        text += fmt::format("{}{} {}", separator, count, name);
         separator = ", ";
     }
     double predicted = 0.0;

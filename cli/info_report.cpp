@@ -5,10 +5,11 @@
 #include "cli/terminal_text.h"
 
 #include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace lambert {
@@ -20,17 +21,7 @@ namespace {
 constexpr std::size_t kNodesShown = 20;
 constexpr std::size_t kShellsInJson = 100;
 
-const char* kindName(PunctualLight::Kind kind) {
-    switch (kind) {
-    case PunctualLight::Kind::Point:
-        return "point";
-    case PunctualLight::Kind::Spot:
-        return "spot";
-    case PunctualLight::Kind::Directional:
-        return "directional";
-    }
-    return "";
-}
+constexpr std::array kKinds{"point", "spot", "directional"}; ///< as PunctualLight::Kind
 
 /// A directional light has none.
 glm::dvec3 placeOf(const Scene& scene, const PunctualLight& light) {
@@ -45,8 +36,6 @@ std::string placeText(const Scene& scene, const glm::vec3& place) {
     const int decimals = std::clamp(4 - static_cast<int>(std::floor(std::log10(size))), 0, 12);
     return fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", p.x, decimals, p.y, decimals, p.z, decimals);
 }
-
-double degrees(float radians) { return static_cast<double>(radians) * 180.0 / std::numbers::pi; }
 
 /// Nodes with polygons, largest area first.
 std::vector<std::uint32_t> largestNodes(const SceneFacts& facts) {
@@ -161,7 +150,7 @@ Json infoReport(const InfoReportInput& in) {
     report["lights"] = Json::array();
     for (const PunctualLight& light : scene.lights)
         report["lights"].push_back({{"name", light.name},
-                                    {"kind", kindName(light.kind)},
+                                    {"kind", kKinds[static_cast<std::size_t>(light.kind)]},
                                     {"intensity", jsonVector(glm::dvec3(light.intensity))},
                                     {"position", jsonVector(placeOf(scene, light))},
                                     {"direction", jsonVector(glm::dvec3(light.direction))}});
@@ -224,11 +213,11 @@ void printSummary(const InfoReportInput& in) {
 
 void printLightsAndCameras(const Scene& scene) {
     for (const PunctualLight& light : scene.lights)
-        fmt::print("light       {}: {}, {} {}\n", printable(light.name), kindName(light.kind), rgb(light.intensity),
-                   light.kind == PunctualLight::Kind::Directional ? "lx" : "cd");
+        fmt::print("light       {}: {}, {} {}\n", printable(light.name), kKinds[static_cast<std::size_t>(light.kind)],
+                   rgb(light.intensity), light.kind == PunctualLight::Kind::Directional ? "lx" : "cd");
     for (const Camera& camera : scene.cameras)
         fmt::print("camera      {}: eye {}, {:.1f}° vertically\n", printable(camera.name), placeText(scene, camera.eye),
-                   degrees(camera.verticalFov));
+                   glm::degrees(double{camera.verticalFov}));
 }
 
 /// What a material has beside its two colours.

@@ -172,29 +172,6 @@ private:
     std::vector<SceneBuilder::CornerSurface> surface_;
 };
 
-/// Reports the bytes of a file that is gone through twice.
-class ReadProgress {
-public:
-    ReadProgress(Progress* progress, const std::filesystem::path& path) : progress_(progress) {
-        std::error_code missing; // opening it will tell
-        const auto size = std::filesystem::file_size(path, missing);
-        if (progress_) progress_->begin("read", missing ? 0 : size);
-    }
-    std::function<void(std::uint64_t)> counter() {
-        return [this](std::uint64_t bytes) {
-            if (progress_) progress_->advance((gone_ + bytes) / 2 - gone_ / 2);
-            gone_ += bytes;
-        };
-    }
-    void end() {
-        if (progress_) progress_->end();
-    }
-
-private:
-    Progress* progress_;
-    std::uint64_t gone_ = 0;
-};
-
 void warnOfIgnored(const ObjVertices& file, SceneBuilder& builder) {
     std::string ignored;
     if (file.pointsAndLines > 0) ignored = fmt::format("{} points or lines", file.pointsAndLines);
@@ -206,21 +183,27 @@ void warnOfIgnored(const ObjVertices& file, SceneBuilder& builder) {
 } // namespace
 
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
-    ReadProgress progress(options.progress, path);
+    std::error_code missing; // opening it will tell
+    const auto size = std::filesystem::file_size(path, missing);
+    if (options.progress) options.progress->begin("read", missing ? 0 : size);
+    auto countBytes = [&, gone = std::uint64_t{0}](std::uint64_t bytes) mutable {
+        if (options.progress) options.progress->advance((gone + bytes) / 2 - gone / 2);
+        gone += bytes;
+    };
     SceneBuilder builder(path.string(), options);
 
-    ObjLines first(path, progress.counter());
+    ObjLines first(path, std::ref(countBytes));
     const ObjVertices vertices = readObjVertices(first, options.metresPerUnit, builder);
     builder.reserve(vertices.positions, vertices.faces);
 
     ObjMaterials materials(builder, options, path.parent_path(), !vertices.tints.empty());
     for (const std::string& library : vertices.libraries) materials.addLibraries(library);
 
-    ObjLines second(path, progress.counter());
+    ObjLines second(path, std::ref(countBytes));
     FaceReader(second, vertices, materials, builder).run();
     materials.warnOfReplacements();
     warnOfIgnored(vertices, builder);
-    progress.end();
+    if (options.progress) options.progress->end();
     return builder.finish();
 }
 
