@@ -46,13 +46,8 @@ Image renderPicture(const BakedScene& baked, const Picture& shot, const BakeOutp
     return renderBaked(baked.mesh, baked.baked, *baked.rays, shot.camera, options, progress);
 }
 
-bool isBlack(const Image& image) {
-    return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0.0F); });
-}
-
-bool isBlack(const BakedMesh& mesh, Quantity quantity) {
-    const auto& shown = quantity == Quantity::Radiosity ? mesh.radiosity : mesh.irradiance;
-    return std::all_of(shown.begin(), shown.end(), [](const Rgb& value) { return value == Rgb(0.0F); });
+bool allBlack(const std::vector<Rgb>& light) {
+    return std::ranges::all_of(light, [](const Rgb& value) { return value == Rgb(0.0F); });
 }
 
 std::string solverText(const SolvedScene& solved) {
@@ -216,7 +211,9 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakePlan& plan, const BakeJob&
     if (!job.image.empty()) {
         shot = picture(pictureArguments(a, job), *baked.scene, *baked.rays);
         const Image image = renderPicture(baked, *shot, output, progress);
-        if (isBlack(image) && !isBlack(baked.baked, output.quantity)) {
+        const BakedMesh& mesh = baked.baked;
+        if (allBlack(image.pixels) &&
+            !allBlack(output.quantity == Quantity::Radiosity ? mesh.radiosity : mesh.irradiance)) {
             pictureWarning =
                 fmt::format("{}: the picture is black: its camera sees nothing that is lit, only backs, shadow "
                             "or nothing at all; give another with --eye and --look-at",

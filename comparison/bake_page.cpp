@@ -128,16 +128,13 @@ private:
     void facts() {
         page_.section("What was compared");
         HtmlTable table;
-        const auto add = [&](const std::string& name, const std::string& value) {
-            table.rows.push_back({name, value});
-        };
-        add("A, the reference", origin(in_.a));
-        add("B", origin(in_.b));
-        add("Patches", of().samePatches
-                           ? "the same"
-                           : fmt::format("others: B at the centres of A's; {} of the area has no counterpart",
-                                         percentText(of().unmatchedArea)));
-        for (const auto& [name, value] : in_.facts) add(name, value);
+        table.add("A, the reference", origin(in_.a));
+        table.add("B", origin(in_.b));
+        table.add("Patches", of().samePatches
+                                 ? "the same"
+                                 : fmt::format("others: B at the centres of A's; {} of the area has no counterpart",
+                                               percentText(of().unmatchedArea)));
+        for (const auto& [name, value] : in_.facts) table.add(name, value);
         page_.table(table);
     }
 

@@ -188,9 +188,9 @@ ErrorAnatomy errorAnatomy(std::span<const double> weight, std::span<const RgbSum
     };
     anatomy.parts.push_back(part(0, sampling));
     for (std::size_t k = 0; k < approximations.size(); ++k) anatomy.parts.push_back(part(k + 1, approximations[k]));
-    anatomy.left = part(approximations.size() + 1, {"unexplained", "", ""});
+    ErrorPart& left = anatomy.parts.emplace_back(part(approximations.size() + 1, {"unexplained", "", ""}));
     // |(e, δ)| / |e|² is at most |δ| / |e|.
-    if (anatomy.rms > 0.0) anatomy.left.shareError = std::hypot(anatomy.left.shareError, ownError / anatomy.rms);
+    if (anatomy.rms > 0.0) left.shareError = std::hypot(left.shareError, ownError / anatomy.rms);
     return anatomy;
 }
 

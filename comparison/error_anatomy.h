@@ -30,10 +30,10 @@ struct ErrorPart {
 /// has none, one that cancels others has a negative one. All means are over pairs of different runs, so that noise that a part and
 /// the error have in common is not taken for a share.
 struct ErrorAnatomy {
-    double rms = 0.0;             //!< √⟨|F_0 − R|²⟩
-    double rmsError = 0.0;        //!< standard error
-    std::vector<ErrorPart> parts; //!< sampling, then the method's approximations
-    ErrorPart left;               //!< what is left unexplained: the reference's error, and what no approximation names
+    double rms = 0.0;      //!< √⟨|F_0 − R|²⟩
+    double rmsError = 0.0; //!< standard error
+    /// Sampling, the method's approximations, and what is left unexplained: the reference's error, and what no approximation names.
+    std::vector<ErrorPart> parts;
 };
 
 /// The size of each part at each receiver, RMS over the channels, in the fields' unit: of sampling the deviation of one run, of all

@@ -82,22 +82,19 @@ private:
         const PatchMesh& mesh = in_.meshed.mesh;
         const double area = std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0);
         HtmlTable table;
-        const auto add = [&](const std::string& name, const std::string& value) {
-            table.rows.push_back({name, value});
-        };
-        add("Scene", in_.scene);
-        add("Patches", fmt::format("{}, {:.4g} m² in all, from {} polygons", mesh.size(), area,
-                                   in_.meshed.scene->polygons.size()));
+        table.add("Scene", in_.scene);
+        table.add("Patches", fmt::format("{}, {:.4g} m² in all, from {} polygons", mesh.size(), area,
+                                         in_.meshed.scene->polygons.size()));
         if (std::isfinite(in_.meshed.meshReport.patchLength))
-            add("Longest edge", fmt::format("{:.4g} m", in_.meshed.meshReport.patchLength));
-        add("Reference", of_.reference);
-        add("Its own error", !of_.referenceError ? "unknown"
-                             : *of_.referenceError > 0
-                                 ? percentText(*of_.referenceError) + ": errors below it tell nothing"
-                                 : "none but rounding");
-        add("Its cost", fmt::format("{:.3g} CPU seconds", of_.referenceSeconds));
-        add("Threshold", fmt::format("relative errors count factors from {:.3g}", of_.threshold));
-        for (const auto& [name, value] : in_.facts) add(name, value);
+            table.add("Longest edge", fmt::format("{:.4g} m", in_.meshed.meshReport.patchLength));
+        table.add("Reference", of_.reference);
+        table.add("Its own error", !of_.referenceError ? "unknown"
+                                   : *of_.referenceError > 0
+                                       ? percentText(*of_.referenceError) + ": errors below it tell nothing"
+                                       : "none but rounding");
+        table.add("Its cost", fmt::format("{:.3g} CPU seconds", of_.referenceSeconds));
+        table.add("Threshold", fmt::format("relative errors count factors from {:.3g}", of_.threshold));
+        for (const auto& [name, value] : in_.facts) table.add(name, value);
         return table;
     }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 namespace lambert {
@@ -18,6 +19,8 @@ namespace lambert {
 namespace {
 
 constexpr int kMostDecades = 3; ///< of a false-colour scale
+constexpr std::array kErrorSizes{&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms,
+                                 &FieldErrors::percentile99, &FieldErrors::maximum};
 
 Image falseColours(const Image& like, std::span<const float> values, const ColourScale& scale) {
     Image image = like;
@@ -72,28 +75,27 @@ private:
     HtmlTable facts() const {
         const ReferenceLight& reference = of_.reference;
         HtmlTable table;
-        const auto add = [&](const std::string& name, const std::string& value) {
-            table.rows.push_back({name, value});
-        };
-        add("Scene", in_.scene);
-        add("Receivers",
-            fmt::format("the centres of {} patches, weighted by area; {} × {} pixels", of_.points.receivers.size(),
-                        in_.pictures.reference.width, in_.pictures.reference.height));
-        add("Mean irradiance", fmt::format("{:.4g} per m²; errors are shares of it", mean_));
-        add("Reference", fmt::format("patch radiosity on {} patches, {} lines each, gathered at the points and "
-                                     "extrapolated with the error ~ h^{:.2f} ({})",
-                                     fmt::join(of_.referencePatches, ", "), of_.referenceLines, reference.order,
-                                     reference.orderFound ? "found" : "assumed"));
-        add("Its own error",
-            fmt::format("{}: meshes {}, form factors {}, gathering {}. Errors below it tell nothing",
-                        percentText(reference.rms.total() / mean_), percentText(reference.rms.mesh / mean_),
-                        percentText(reference.rms.transport / mean_), percentText(reference.rms.gathering / mean_)));
-        add("In the picture", percentText(in_.pictures.ownError) + " of the mean radiance");
+        table.add("Scene", in_.scene);
+        table.add("Receivers", fmt::format("the centres of {} patches, weighted by area; {} × {} pixels",
+                                           of_.points.receivers.size(), in_.pictures.reference.width,
+                                           in_.pictures.reference.height));
+        table.add("Mean irradiance", fmt::format("{:.4g} per m²; errors are shares of it", mean_));
+        table.add("Reference", fmt::format("patch radiosity on {} patches, {} lines each, gathered at the points and "
+                                           "extrapolated with the error ~ h^{:.2f} ({})",
+                                           fmt::join(of_.referencePatches, ", "), of_.referenceLines, reference.order,
+                                           reference.orderFound ? "found" : "assumed"));
+        table.add("Its own error",
+                  fmt::format("{}: meshes {}, form factors {}, gathering {}. Errors below it tell nothing",
+                              percentText(reference.rms.total() / mean_), percentText(reference.rms.mesh / mean_),
+                              percentText(reference.rms.transport / mean_),
+                              percentText(reference.rms.gathering / mean_)));
+        table.add("In the picture", percentText(in_.pictures.ownError) + " of the mean radiance");
         for (const VplMethodResult& method : of_.methods)
             for (const auto& [name, value] : method.method->options())
-                add(of_.methods.size() > 1 ? fmt::format("{}, {}", method.method->name(), name) : capitalised(name),
-                    value);
-        for (const auto& [name, value] : in_.facts) add(name, value);
+                table.add(of_.methods.size() > 1 ? fmt::format("{}, {}", method.method->name(), name)
+                                                 : capitalised(name),
+                          value);
+        for (const auto& [name, value] : in_.facts) table.add(name, value);
         return table;
     }
 
@@ -123,9 +125,7 @@ private:
             const VplRung& main = method.ladder[method.main];
             std::vector<HtmlCell> row{method.method->name(), countText(main.effort),
                                       countText(main.of(&VplRun::lights).mean), std::string("points")};
-            for (const auto value : {&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms,
-                                     &FieldErrors::percentile99, &FieldErrors::maximum})
-                row.emplace_back(percentText(overall(main, value, mean_)));
+            for (const auto value : kErrorSizes) row.emplace_back(percentText(overall(main, value, mean_)));
             row.emplace_back(fmt::format("{:.4f}", overall(main, &FieldErrors::energyRatio, 1.0).mean));
             row.insert(row.end(), {HtmlCell("–"), HtmlCell("–")});
             row.emplace_back(fmt::format("{:.3g}", main.of(&VplRun::wallSeconds).mean));
@@ -135,9 +135,7 @@ private:
             const FieldErrors& errors = picture.errors.overall;
             const double unit = errors.mean;
             row = {method.method->name(), countText(main.effort), HtmlCell(), std::string("picture")};
-            for (const double value :
-                 {errors.bias, errors.meanAbsolute, errors.rms, errors.percentile99, errors.maximum})
-                row.emplace_back(percentText(value / unit));
+            for (const auto value : kErrorSizes) row.emplace_back(percentText(errors.*value / unit));
             row.emplace_back(fmt::format("{:.4f}", errors.energyRatio));
             row.emplace_back(fmt::format("{:.1f}", picture.psnr));
             row.emplace_back(fmt::format("{:.4f}", picture.flip));
@@ -146,12 +144,6 @@ private:
             table.rows.push_back(row);
         }
         page_.table(table);
-    }
-
-    static std::vector<ErrorPart> allParts(const ErrorAnatomy& anatomy) {
-        std::vector<ErrorPart> parts = anatomy.parts;
-        parts.push_back(anatomy.left);
-        return parts;
     }
 
     void anatomy(const VplMethodResult& method) {
@@ -169,7 +161,7 @@ private:
         table.dense = true;
         table.words = 2;
         table.head = {"part", "share", "its own RMS", "its bias", "error without it", "is", "exchanged for"};
-        for (const ErrorPart& part : allParts(anatomy)) {
+        for (const ErrorPart& part : anatomy.parts) {
             bars.push_back({part.approximation.part, part.share, part.shareError});
             table.rows.push_back(
                 {part.approximation.part, percentText(MeanDeviation{part.share, part.shareError}),
@@ -200,8 +192,7 @@ private:
             const VplBounce& bounce = method.bounces[k];
             std::vector<HtmlCell> row{k == 1 ? std::string("once") : fmt::format("{} times", k),
                                       percentText(bounce.of(&FieldErrors::mean).mean / mean_)};
-            for (const auto value : {&FieldErrors::bias, &FieldErrors::meanAbsolute, &FieldErrors::rms,
-                                     &FieldErrors::percentile99, &FieldErrors::maximum}) {
+            for (const auto value : kErrorSizes) {
                 const MeanDeviation found = bounce.of(value);
                 row.emplace_back(percentText(MeanDeviation{found.mean / mean_, found.deviation / mean_}));
             }
@@ -246,7 +237,6 @@ private:
             for (std::size_t i = 0; i < sizes.size(); ++i) map[of_.patches[i]] = sizes[i] / static_cast<float>(mean_);
             all.insert(all.end(), map.begin(), map.end());
         }
-        const std::vector<ErrorPart> parts = allParts(method.anatomy);
         const ColourScale scale(all, kMostDecades);
         page_.section("Where each part is");
         page_.paragraph("The size of each part at the patches' centres, relative to the mean irradiance, one scale for "
@@ -254,7 +244,7 @@ private:
                         "deviation of a single run. Means over the seeds have noise of their own.");
         std::vector<HtmlFigure> figures;
         for (std::size_t k = 0; k < maps.size(); ++k) {
-            const std::string& part = parts[k].approximation.part;
+            const std::string& part = method.anatomy.parts[k].approximation.part;
             const Image image =
                 patchPicture(in_.meshed.mesh, *in_.meshed.rays, maps[k], scale, in_.pictures.camera,
                              {in_.pictures.reference.width, in_.pictures.reference.height, 2}, progress_);

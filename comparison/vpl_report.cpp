@@ -91,7 +91,6 @@ Json methodJson(const VplMethodResult& result, double mean) {
     json["options"] = options;
     Json parts = Json::array();
     for (const ErrorPart& part : result.anatomy.parts) parts.push_back(partJson(part, mean));
-    parts.push_back(partJson(result.anatomy.left, mean));
     json["anatomy"] = parts;
     Json ladder = Json::array();
     for (const VplRung& rung : result.ladder) ladder.push_back(rungJson(rung, mean));
@@ -236,7 +235,6 @@ std::string vplComparisonText(const VplComparison& comparison) {
         text += fmt::format("  {:<12} {:>17} {:>12} {:>20} {:>14}   {}\n", "part", "share", "its RMS", "its bias",
                             "without it", "exchanged");
         for (const ErrorPart& part : method.anatomy.parts) text += partText(part, mean);
-        text += partText(method.anatomy.left, mean);
         if (!method.bounces.empty()) text += bouncesText(method, comparison.referenceBounces, mean);
         text += '\n';
     }

@@ -21,6 +21,8 @@ struct HtmlTable {
     std::vector<std::vector<HtmlCell>> rows; //!< #columns each; an empty row is a rule
     bool dense = false;                      //!< smaller, for many columns
     std::size_t words = 0;                   //!< so many columns at the end hold words, too
+
+    void add(const std::string& name, const std::string& value) { rows.push_back({name, value}); }
 };
 
 /// Something to look at.
