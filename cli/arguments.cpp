@@ -26,11 +26,8 @@ void addMeshArguments(CLI::App& command, TransportArguments& a, const std::strin
             "preview, normal or high: patches, resolution, rays to the sky and tolerance, unless given [normal]")
         ->check(CLI::IsMember({"preview", "normal", "high"}));
     auto* length = command.add_option("--patch-length", a.patchLength, "Longest edge of a patch")->type_name("METRES");
-    command
-        .add_option("--patches", a.patches,
-                    fmt::format("About so many patches; 0 keeps the input's polygons [{}]", patches))
-        ->type_name("N")
-        ->check(between(0.0, 2e8))
+    addNumber(command, "--patches", a.patches,
+              fmt::format("About so many patches; 0 keeps the input's polygons [{}]", patches), "N", 0.0, 2e8)
         ->excludes(length);
     command.add_flag("--whole-contacts", a.wholeContacts,
                      "Do not divide surfaces along the outlines of what stands on them or hovers over them");
@@ -47,9 +44,8 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
             "Takes the form factors from a file that `lambert formfactors` or another program wrote for this mesh")
         ->type_name("MATRIX")
         ->group("Transport");
-    command.add_option("--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]")
-        ->type_name("DEGREES")
-        ->check(between(0.0, 180.0))
+    addNumber(command, "--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]", "DEGREES",
+              0.0, 180.0)
         ->group("Solution");
     addLightArguments(command, a.light);
     addSolverArguments(command, a);
@@ -58,10 +54,8 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
 
 void addRunArguments(CLI::App& command, RunArguments& a) {
     command.option_defaults()->group("Run");
-    command.add_option("--seed", a.seed, "Of all random numbers [1]")
-        ->type_name("S")
-        ->check(between(0.0, 18446744073709551615.0));
-    command.add_option("--threads", a.threads, "0: one per processor [0]")->type_name("N")->check(between(0, 1024));
+    addNumber(command, "--seed", a.seed, "Of all random numbers [1]", "S", 0.0, 18446744073709551615.0);
+    addNumber(command, "--threads", a.threads, "0: one per processor [0]", "N", 0, 1024);
     command.add_option("--json", a.json, "Writes the report as JSON")->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "Only errors and warnings");
 }

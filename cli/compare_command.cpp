@@ -153,14 +153,9 @@ void addCompareFormFactors(CLI::App& compare, CommandRun& run) {
             "--reference", a.reference,
             "auto, exact (convex scenes), METHOD:EFFORT or a matrix file; auto: exact, else closed forms [auto]")
         ->type_name("REFERENCE");
-    command.add_option("--seeds", a.seeds, "Runs of each method and effort, 1 to 1000 [5]")
-        ->type_name("K")
-        ->check(between(1.0, 1000.0));
-    command
-        .add_option("--threshold", a.threshold,
-                    "Smallest factor that counts in relative errors, 0 to 1 [0.1 / patches]")
-        ->type_name("F")
-        ->check(between(0.0, 1.0));
+    addNumber(command, "--seeds", a.seeds, "Runs of each method and effort, 1 to 1000 [5]", "K", 1.0, 1000.0);
+    addNumber(command, "--threshold", a.threshold,
+              "Smallest factor that counts in relative errors, 0 to 1 [0.1 / patches]", "F", 0.0, 1.0);
     addMeshArguments(command, a.transport);
     addCameraArguments(command, a.picture);
     addRunArguments(command, a.run);

@@ -210,27 +210,17 @@ void addCompareVpl(CLI::App& compare, CommandRun& run) {
     command
         .add_option("--methods", a.methods, fmt::format("all, or some of {} [all]", fmt::join(vplMethodNames(), ",")))
         ->type_name("A,B,…");
-    command.add_option("--vpls", a.vpls, "Particles of the anatomy and the pictures, 1 to 16777216 [1024]")
-        ->type_name("N")
-        ->check(between(1.0, kMostVpls));
-    command.add_option("--ladder", a.ladder, "Further numbers of particles [N/16 N/4 4N 16N]")
-        ->type_name("N,N,…")
-        ->delimiter(',')
-        ->check(between(1.0, kMostVpls));
-    command.add_option("--seeds", a.seeds, "Runs of each method and number, 3 to 1000 [16]")
-        ->type_name("K")
-        ->check(between(3.0, 1000.0));
-    command
-        .add_option("--per-bounce", a.perBounce,
-                    "Also the errors of light that was reflected 0, 1, ... K times, each by itself; 0 to 16")
-        ->type_name("K")
-        ->check(between(0.0, 16.0));
+    addNumber(command, "--vpls", a.vpls, "Particles of the anatomy and the pictures, 1 to 16777216 [1024]", "N", 1.0,
+              kMostVpls);
+    addNumber(command, "--ladder", a.ladder, "Further numbers of particles [N/16 N/4 4N 16N]", "N,N,…", 1.0, kMostVpls)
+        ->delimiter(',');
+    addNumber(command, "--seeds", a.seeds, "Runs of each method and number, 3 to 1000 [16]", "K", 3.0, 1000.0);
+    addNumber(command, "--per-bounce", a.perBounce,
+              "Also the errors of light that was reflected 0, 1, ... K times, each by itself; 0 to 16", "K", 0.0, 16.0);
     command.option_defaults()->group("Method");
     command.add_option("--walk", a.walk, "How particles end: quasi, roulette or fixed [quasi]")
         ->check(CLI::IsMember({"quasi", "roulette", "fixed"}));
-    command.add_option("--vpl-bounces", a.bounces, "Of fixed walks, 0 to 126 [4]")
-        ->type_name("K")
-        ->check(between(0.0, 126.0));
+    addNumber(command, "--vpl-bounces", a.bounces, "Of fixed walks, 0 to 126 [4]", "K", 0.0, 126.0);
     command
         .add_option("--clamp", a.clamp, "Bound of the geometric term, in units of 6 / area of the scene; or none [10]")
         ->type_name("G|none");

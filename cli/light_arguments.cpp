@@ -103,16 +103,10 @@ void addLightArguments(CLI::App& command, LightArguments& a) {
                     "Where the sun stands: degrees clockwise from north (-Z; east is +X), and above the horizon; "
                     "optionally its illuminance, lx [that under a clear sky; none under an overcast one]")
         ->type_name("AZIMUTH,ELEVATION[,LUX]");
-    command
-        .add_option("--light-points", a.points,
-                    "Points of a patch from which each light without area is looked for [256]")
-        ->type_name("N")
-        ->check(between(1, 65536));
-    command
-        .add_option("--sky-rays", a.skyRays,
-                    "Rays of a patch to the sky [4096; 512 and 16384 with --quality preview and high]")
-        ->type_name("N")
-        ->check(between(2, 16777216));
+    addNumber(command, "--light-points", a.points,
+              "Points of a patch from which each light without area is looked for [256]", "N", 1, 65536);
+    addNumber(command, "--sky-rays", a.skyRays,
+              "Rays of a patch to the sky [4096; 512 and 16384 with --quality preview and high]", "N", 2, 16777216);
 }
 
 void checkLights(const LightArguments& a) {

@@ -70,16 +70,10 @@ void addSceneOptions(CLI::App& command, SceneArguments& a) {
     command.add_option("--unit", a.unit, "Metres per unit of the file (not of glTF, which is in metres) [1]")
         ->type_name("METRES");
     command.add_flag("--two-sided", a.twoSided, "Every surface reflects and emits on both sides");
-    command
-        .add_option("--curve-segments", a.curveSegments,
-                    "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]")
-        ->type_name("N")
-        ->check(between(4.0, 1024.0));
-    command
-        .add_option("--most-polygons", a.mostPolygons,
-                    "Refuses scenes with more; 0: a million and one for each byte of the file [0]")
-        ->type_name("N")
-        ->check(between(0.0, 4e9));
+    addNumber(command, "--curve-segments", a.curveSegments,
+              "Straight pieces that a circle of an MGF scene becomes, even, 4 to 1024 [24]", "N", 4.0, 1024.0);
+    addNumber(command, "--most-polygons", a.mostPolygons,
+              "Refuses scenes with more; 0: a million and one for each byte of the file [0]", "N", 0.0, 4e9);
     const auto addList = [&](const char* name, std::vector<std::string>& list, const char* text, const char* type) {
         command.add_option(name, list, text)->type_name(type)->allow_extra_args(false);
     };

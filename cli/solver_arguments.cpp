@@ -18,33 +18,19 @@ void addSolverArguments(CLI::App& command, TransportArguments& a) {
                                 fmt::join(solvers, ", ")))
         ->check(CLI::IsMember(solvers))
         ->type_name("SOLVER");
-    command.add_option("--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]")
-        ->type_name("T")
-        ->check(between(0.0, 1.0));
-    command
-        .add_option("--bounces", a.bounces,
-                    "Jacobi: at most so many bounces; 0: no limit [0]; --walk fixed: so many [4]")
-        ->type_name("K")
-        ->check(between(0, 1e6));
+    addNumber(command, "--tolerance", a.tolerance, "Relative residual at which the solver stops [1e-4]", "T", 0.0, 1.0);
+    addNumber(command, "--bounces", a.bounces,
+              "Jacobi: at most so many bounces; 0: no limit [0]; --walk fixed: so many [4]", "K", 0, 1e6);
     command.add_flag("--keep-bounces", a.keepBounces,
                      "Jacobi: keeps what each bounce adds, 12 bytes per patch each, and reports it (--json)");
-    command
-        .add_option("--relaxation", a.relaxation,
-                    "Gauss-Seidel: above 1, below 2 over-relaxes, which pays in bright rooms [1]")
-        ->type_name("W")
-        ->check(between(0.0, 2.0));
-    command
-        .add_option(
-            "--target-error", a.targetError,
-            "Stochastic and random-walk: relative standard error of E, over all patches, at which to stop; kept in "
-            "19 of 20 runs [0.02; with --rays none]")
-        ->type_name("E")
-        ->check(between(0.0, 1.0));
-    command
-        .add_option("--rays", a.rays,
-                    "Stochastic: rays in all, random-walk: walks; with --target-error at most so many [4e9]")
-        ->type_name("N")
-        ->check(between(1.0, 1e15));
+    addNumber(command, "--relaxation", a.relaxation,
+              "Gauss-Seidel: above 1, below 2 over-relaxes, which pays in bright rooms [1]", "W", 0.0, 2.0);
+    addNumber(command, "--target-error", a.targetError,
+              "Stochastic and random-walk: relative standard error of E, over all patches, at which to stop; kept in "
+              "19 of 20 runs [0.02; with --rays none]",
+              "E", 0.0, 1.0);
+    addNumber(command, "--rays", a.rays,
+              "Stochastic: rays in all, random-walk: walks; with --target-error at most so many [4e9]", "N", 1.0, 1e15);
     command
         .add_option(
             "--warm-start", a.warmStart,

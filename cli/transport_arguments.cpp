@@ -55,25 +55,21 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
                                const std::vector<std::string>& choices) {
         command.add_option(name, value, text)->check(CLI::IsMember(choices))->type_name(type);
     };
-    const auto addNumber = [&](const char* name, auto& value, const char* text, const char* type, double low,
-                               double high) {
-        command.add_option(name, value, text)->check(between(low, high))->type_name(type);
-    };
     addChoice("--method", a.method,
               fmt::format("How form factors are computed, or light without them: {} [auto; hemicube with its options]",
                           fmt::join(methods, ", ")),
               "METHOD", methods);
     addNumber(
-        "--resolution", a.resolution,
+        command, "--resolution", a.resolution,
         "Pixels along the edge of a hemicube, even, 4 to 4096 [128], or of a hemisphere's square, a multiple of 4 "
         "[220]; less if time or memory ask for it",
         "R", 4.0, 4096.0);
-    addNumber("--hemicubes", a.hemicubes, "Hemicubes or hemispheres spread over a patch, 1 to 1024 [1]", "K", 1.0,
-              1024.0);
+    addNumber(command, "--hemicubes", a.hemicubes, "Hemicubes or hemispheres spread over a patch, 1 to 1024 [1]", "K",
+              1.0, 1024.0);
     addChoice("--rotation", a.rotation, "Of these about their normals: random or fixed [random]", "HOW",
               {"random", "fixed"});
     addNumber(
-        "--lines", a.lines,
+        command, "--lines", a.lines,
         "Local lines per patch, 1 to 16777216 [32768], or global lines in all, up to 4294967295 [an eighth of the "
         "hemicubes' rays]; less if time or memory ask for it",
         "N", 1.0, 4294967295.0);
@@ -83,7 +79,7 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         "SAMPLER", {"random", "stratified", "halton", "sobol"});
     addChoice("--line-set", a.lineSet, "Global lines: chords of a sphere, or bundles of parallel lines [chords]", "SET",
               {"chords", "bundles"});
-    addNumber("--form-factor-error", a.formFactorError,
+    addNumber(command, "--form-factor-error", a.formFactorError,
               "auto: aimed at in a row, sum of |error| over its factors, 1e-5 to 0.5 [0.01]; closed form: in partly "
               "hidden pairs, relative, 1e-8 to 0.1 [1e-4]",
               "E", 1e-8, 0.5);
@@ -92,8 +88,8 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
         "Of factors in memory: double (12 bytes each), float (8), compact (3; to 0.017 %, exact for lines), auto: "
         "float while it fits; none: rows are computed when a solver needs them, for --solver southwell [auto]",
         "STORAGE", {"double", "float", "compact", "none", "auto"});
-    addNumber("--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]", "BYTES",
-              1.0, 1e18);
+    addNumber(command, "--memory-limit", a.memoryLimit, "For the form factors; what would take more is refused [8 GiB]",
+              "BYTES", 1.0, 1e18);
     command.add_flag("--repair", a.repair,
                      "Makes the form factors reciprocal, A_i F_ij = A_j F_ji, and their rows sum to what they must");
     command.option_defaults()->group("Run");
@@ -105,10 +101,7 @@ void addFormFactorArguments(CLI::App& command, TransportArguments& a, const std:
                         "removed at the end")
             ->type_name("FILE");
     command.add_flag("--resume", a.resume, "Goes on with the checkpoint, if it is there")->needs(checkpoint);
-    command.add_option("--checkpoint-interval", a.checkpointInterval, "[60]")
-        ->type_name("SECONDS")
-        ->check(between(0.0, 1e6))
-        ->needs(checkpoint);
+    addNumber(command, "--checkpoint-interval", a.checkpointInterval, "[60]", "SECONDS", 0.0, 1e6)->needs(checkpoint);
 }
 
 MatrixSource matrixSource(const TransportArguments& a, const RunArguments& run) {

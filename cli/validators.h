@@ -18,4 +18,11 @@ inline CLI::Validator between(double lowest, double highest) {
             "", ""};
 }
 
+/// An option for one number, or several, `between` these two; `type`: what --help calls it.
+template <typename Value>
+CLI::Option* addNumber(CLI::App& command, const char* name, Value& value, const std::string& text, const char* type,
+                       double lowest, double highest) {
+    return command.add_option(name, value, text)->type_name(type)->check(between(lowest, highest));
+}
+
 } // namespace lambert

@@ -44,13 +44,10 @@ void refuseOthers(const TransportArguments& a) {
 
 void addInstantRadiosityArguments(CLI::App& command, TransportArguments& a) {
     command.option_defaults()->group("Instant radiosity");
-    command
-        .add_option(
-            "--vpls", a.vpls,
-            "Particles from the lights, 1 to 16777216: each leaves virtual point lights at its start and wherever "
-            "it is reflected [4096]")
-        ->type_name("N")
-        ->check(between(1.0, 16777216.0));
+    addNumber(command, "--vpls", a.vpls,
+              "Particles from the lights, 1 to 16777216: each leaves virtual point lights at its start and wherever "
+              "it is reflected [4096]",
+              "N", 1.0, 16777216.0);
     command
         .add_option(
             "--walk", a.walk,
