@@ -25,9 +25,9 @@ namespace {
 constexpr float kMaxEmission = 1e30F; // far above it, π L_e would not be finite
 constexpr std::uintmax_t kPolygonsOfAnyFile = 1U << 20;
 constexpr std::size_t kMostFanCorners = 256;
-constexpr float kSmallestScene =
-    1e-10F;                      // metres: each of 10^8 patches has an area in single precision, with much to spare
-constexpr double kCoarse = 1e-5; // of the diagonal: coarser coordinates open gaps that light finds
+// Metres: each of 10^8 patches has an area in single precision, with much to spare.
+constexpr float kSmallestScene = 1e-10F;
+constexpr double kCoarse = 1e-5;      // of the diagonal: coarser coordinates open gaps that light finds
 constexpr double kMaxOffPlane = 1e-5; // of a quad's longest diagonal
 
 SceneBuilder::CornerSurface finite(SceneBuilder::CornerSurface corner) {
@@ -110,10 +110,6 @@ std::uint32_t SceneBuilder::addNode(std::string name) {
     return static_cast<std::uint32_t>(result_.scene.nodes.size() - 1);
 }
 
-void SceneBuilder::addCamera(Camera camera) { result_.scene.cameras.push_back(std::move(camera)); }
-
-void SceneBuilder::addLight(PunctualLight light) { result_.scene.lights.push_back(std::move(light)); }
-
 void SceneBuilder::warn(const std::string& text) { result_.report.warnings.push_back(file_ + ": " + text); }
 
 void SceneBuilder::warnUnlessStrict(const std::string& text) {
@@ -162,10 +158,6 @@ std::shared_ptr<const Texture> SceneBuilder::readTextureBytes(std::span<const st
 std::uint32_t SceneBuilder::addTexture(std::shared_ptr<const Texture> texture) {
     result_.scene.textures.push_back(std::move(texture));
     return static_cast<std::uint32_t>(result_.scene.textures.size() - 1);
-}
-
-void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node) {
-    addPolygon(vertices, material, node, {});
 }
 
 void SceneBuilder::addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,

@@ -53,8 +53,8 @@ public:
     /// Adds the name of a node and returns its index.
     std::uint32_t addNode(std::string name);
 
-    void addCamera(Camera camera);
-    void addLight(PunctualLight light);
+    void addCamera(Camera camera) { result_.scene.cameras.push_back(std::move(camera)); }
+    void addLight(PunctualLight light) { result_.scene.lights.push_back(std::move(light)); }
 
     /// Adds an image and returns its index; the same file and content is read only once. If it cannot be used: kNone and
     /// a warning that ends in `replacement` ("the material's constant reflectance is used"), or InputError under `strict`.
@@ -70,19 +70,16 @@ public:
     /// Adds an image that a reader made.
     std::uint32_t addTexture(std::shared_ptr<const Texture> texture);
 
-    /// Adds a polygon of the file, front counter-clockwise; the indices are what the other functions
-    /// returned. Polygons with non-finite coordinates or without area are dropped; convex planar quads stay
-    /// what they are; all others are split into triangles.
-    void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node);
-
     /// What varies over a polygon, at one corner; see SurfaceCorners.
     struct CornerSurface {
         glm::vec2 uv{0.0F}, emissionUv{0.0F};
         Rgb tint{1.0F};
     };
-    /// The same with `surface` (#vertices) at the corners. Coordinates or tints that are not finite count as 0.
+    /// Adds a polygon of the file, front counter-clockwise; the indices are what the other functions returned. Polygons with
+    /// non-finite coordinates or without area are dropped; convex planar quads stay what they are; all others are split into
+    /// triangles. `surface` (#vertices, or none) is at the corners: coordinates or tints that are not finite count as 0.
     void addPolygon(std::span<const std::uint32_t> vertices, std::uint32_t material, std::uint32_t node,
-                    std::span<const CornerSurface> surface);
+                    std::span<const CornerSurface> surface = {});
 
     /// Adds a planar polygon with holes: the corners of the border (front counter-clockwise) and of each hole, one loop
     /// after the other, `loopSizes` many each. A loop may also take in holes by seams, edges that it goes there and back.
@@ -118,10 +115,9 @@ private:
     ReadOptions options_;
     std::uintmax_t bytes_ = 0; //!< of the scene's files
     ReadResult result_;
-    std::vector<glm::vec3>
-        rounding_;          //!< #positions, what the conversion to single precision lost; until the origin is known
-    PlaceBounds bounds_;    //!< of the vertices that polygons use
-    double coarsest_ = 0.0; //!< metres: distance of neighbouring numbers where the file has single precision
+    std::vector<glm::vec3> rounding_; //!< #positions: what single precision lost of them; until the origin is known
+    PlaceBounds bounds_;              //!< of the vertices that polygons use
+    double coarsest_ = 0.0;           //!< metres: distance of neighbouring numbers where the file has single precision
     std::map<std::string, std::uint32_t> textures_;
     std::size_t fans_ = 0;
     std::size_t droppedFans_ = 0;
