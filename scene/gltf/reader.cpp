@@ -1,5 +1,3 @@
-#include "scene/gltf/reader.h"
-
 #include "core/error.h"
 #include "core/progress.h"
 #include "core/text.h"
@@ -12,6 +10,7 @@
 #include "scene/gltf/mesh.h"
 #include "scene/gltf/meshopt.h"
 #include "scene/gltf/nodes.h"
+#include "scene/readers.h"
 #include "scene/scene_builder.h"
 
 #include <fmt/format.h>
@@ -62,7 +61,7 @@ public:
     GltfReader(const std::filesystem::path& path, const gltf::Model& model, const ReadOptions& options)
         : file_(path.string()),
           model_(model),
-          progress_(options.progress != nullptr ? *options.progress : silent_),
+          progress_(*options.progress),
           builder_(file_, options),
           meshes_(file_, model, addGltfMaterials(file_, gltfFolder(path), model, builder_), builder_, progress_) {}
 
@@ -142,7 +141,6 @@ private:
 
     std::string file_;
     const gltf::Model& model_;
-    Progress silent_;
     Progress& progress_;
     SceneBuilder builder_;
     GltfMeshes meshes_;

@@ -1,7 +1,5 @@
 // The Materials and Geometry Format: G. Ward, Lawrence Berkeley National Laboratory, versions 1.0 (May 1995) to 2.0.
 
-#include "scene/mgf/reader.h"
-
 #include "core/error.h"
 #include "core/progress.h"
 #include "core/text.h"
@@ -10,6 +8,7 @@
 #include "scene/mgf/geometry.h"
 #include "scene/mgf/transform.h"
 #include "scene/named_file.h"
+#include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/words.h"
 
@@ -100,7 +99,7 @@ private:
         if (++entities_ > kMaxEntities)
             entity.fail(
                 fmt::format("at most {} entities, those repeated by arrays and includes counted", kMaxEntities));
-        if (options_.progress && entities_ % 4096 == 0) options_.progress->throwIfCancelled();
+        if (entities_ % 4096 == 0) options_.progress->throwIfCancelled();
 
         if (contexts_.execute(entity)) return k + 1;
         if (MgfGeometry::isSurface(keyword)) {

@@ -116,9 +116,9 @@ void ObjMaterials::setReflectance(const MtlMaterial& source, Material& material,
     }
     const bool useKd = source.diffuse && *source.diffuse != Rgb(0.0F);
     material.reflectance = useKd ? *source.diffuse : Rgb(kUnknownReflectance);
-    const std::uint32_t texture =
-        addTexture(*source.diffuseMap, TextureContent::Colour,
-                   useKd ? "Kd alone is used" : fmt::format("the reflectance {} is used", kUnknownReflectance));
+    const std::uint32_t texture = builder_.addTextureFile(
+        folder_, source.diffuseMap->file, TextureContent::Colour,
+        useKd ? "Kd alone is used" : fmt::format("the reflectance {} is used", kUnknownReflectance));
     if (texture == kNone) return;
     material.reflectance = notAboveLargest(mapFactor(source, source.diffuse, *source.diffuseMap, blackReflectance_));
     material.reflectanceTexture = useOf(texture, *source.diffuseMap);
@@ -128,7 +128,8 @@ void ObjMaterials::setReflectance(const MtlMaterial& source, Material& material,
 void ObjMaterials::setEmission(const MtlMaterial& source, Material& material, ObjMaterial& use) {
     material.emittedRadiance = source.emission.value_or(Rgb(0.0F));
     if (!source.emissionMap) return;
-    const std::uint32_t texture = addTexture(*source.emissionMap, TextureContent::Colour, "Ke alone is used");
+    const std::uint32_t texture =
+        builder_.addTextureFile(folder_, source.emissionMap->file, TextureContent::Colour, "Ke alone is used");
     if (texture == kNone) return;
     material.emittedRadiance = mapFactor(source, source.emission, *source.emissionMap, blackEmission_);
     material.emissionTexture = useOf(texture, *source.emissionMap);
@@ -137,7 +138,8 @@ void ObjMaterials::setEmission(const MtlMaterial& source, Material& material, Ob
 
 void ObjMaterials::setOpacity(const MtlMaterial& source, Material& material, ObjMaterial& use) {
     if (!source.opacityMap) return;
-    const std::uint32_t texture = addTexture(*source.opacityMap, TextureContent::GreyAlpha, "the material is opaque");
+    const std::uint32_t texture =
+        builder_.addTextureFile(folder_, source.opacityMap->file, TextureContent::GreyAlpha, "the material is opaque");
     if (texture == kNone) return;
     material.opacityTexture = useOf(texture, *source.opacityMap);
     material.opacityCutoff = kOpacityCutoff;
@@ -159,10 +161,6 @@ Rgb ObjMaterials::mapFactor(const MtlMaterial& source, const std::optional<Rgb>&
     }
     if (map.base != 0.0F) shiftedMaps_.push_back(source.name);
     return glm::clamp(factor * map.gain, -kLargest, kLargest);
-}
-
-std::uint32_t ObjMaterials::addTexture(const MtlMap& map, TextureContent content, const std::string& replacement) {
-    return builder_.addTextureFile(folder_, map.file, content, replacement);
 }
 
 const ObjMaterial& ObjMaterials::find(const std::string& name) {

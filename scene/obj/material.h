@@ -62,7 +62,6 @@ private:
     void setOpacity(const MtlMaterial& source, Material& material, ObjMaterial& use);
     Rgb mapFactor(const MtlMaterial& source, const std::optional<Rgb>& colour, const MtlMap& map,
                   std::vector<std::string>& blackOnes);
-    std::uint32_t addTexture(const MtlMap& map, TextureContent content, const std::string& replacement);
     ObjMaterial addSubstitute(const std::string& name);
 
     SceneBuilder& builder_;

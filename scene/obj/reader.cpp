@@ -1,10 +1,9 @@
-#include "scene/obj/reader.h"
-
 #include "core/error.h"
 #include "core/text.h"
 #include "scene/obj/lines.h"
 #include "scene/obj/material.h"
 #include "scene/obj/vertices.h"
+#include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/words.h"
 
@@ -22,9 +21,6 @@
 namespace lambert {
 
 namespace {
-
-/// The time to triangulate may grow with the square of this.
-constexpr std::size_t kMostCorners = std::size_t{1} << 16;
 
 /// What references count, for messages.
 struct Numbered {
@@ -77,8 +73,9 @@ private:
         for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
             const Reference reference = parseReference(word, line.number);
             corners_.push_back(reference.position);
-            if (corners_.size() > kMostCorners)
-                failAt(lines_.file(), line.number, line.text, fmt::format("at most {} vertices after f", kMostCorners));
+            if (corners_.size() > kMostPolygonCorners)
+                failAt(lines_.file(), line.number, line.text,
+                       fmt::format("at most {} vertices after f", kMostPolygonCorners));
             if (varies) {
                 surface_.push_back(cornerSurface(reference, word, line.number));
                 hasUv = hasUv && reference.uv != 0;
@@ -185,9 +182,9 @@ void warnOfIgnored(const ObjVertices& file, SceneBuilder& builder) {
 ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options) {
     std::error_code missing; // opening it will tell
     const auto size = std::filesystem::file_size(path, missing);
-    if (options.progress) options.progress->begin("read", missing ? 0 : size);
+    options.progress->begin("read", missing ? 0 : size);
     auto countBytes = [&, gone = std::uint64_t{0}](std::uint64_t bytes) mutable {
-        if (options.progress) options.progress->advance((gone + bytes) / 2 - gone / 2);
+        options.progress->advance((gone + bytes) / 2 - gone / 2);
         gone += bytes;
     };
     SceneBuilder builder(path.string(), options);
@@ -203,7 +200,7 @@ ReadResult readObj(const std::filesystem::path& path, const ReadOptions& options
     FaceReader(second, vertices, materials, builder).run();
     materials.warnOfReplacements();
     warnOfIgnored(vertices, builder);
-    if (options.progress) options.progress->end();
+    options.progress->end();
     return builder.finish();
 }
 

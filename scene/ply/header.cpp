@@ -16,22 +16,10 @@ namespace {
 
 constexpr std::size_t kMostLines = 10000; // so that a hostile header cannot be larger than the data it describes
 
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{{{"char", PlyType::Int8},
-                                                                       {"uchar", PlyType::Uint8},
-                                                                       {"short", PlyType::Int16},
-                                                                       {"ushort", PlyType::Uint16},
-                                                                       {"int", PlyType::Int32},
-                                                                       {"uint", PlyType::Uint32},
-                                                                       {"float", PlyType::Float32},
-                                                                       {"double", PlyType::Float64},
-                                                                       {"int8", PlyType::Int8},
-                                                                       {"uint8", PlyType::Uint8},
-                                                                       {"int16", PlyType::Int16},
-                                                                       {"uint16", PlyType::Uint16},
-                                                                       {"int32", PlyType::Int32},
-                                                                       {"uint32", PlyType::Uint32},
-                                                                       {"float32", PlyType::Float32},
-                                                                       {"float64", PlyType::Float64}}};
+/// The older and the newer names of the eight PlyTypes.
+constexpr std::array<std::string_view, 16> kTypes{"char",  "uchar",  "short",   "ushort", "int",   "uint",
+                                                  "float", "double", "int8",    "uint8",  "int16", "uint16",
+                                                  "int32", "uint32", "float32", "float64"};
 
 std::optional<std::size_t> findProperty(const std::vector<PlyProperty>& properties,
                                         std::initializer_list<std::string_view> names, bool isList) {
@@ -132,10 +120,10 @@ private:
     }
 
     PlyType type(std::string_view name) const {
-        const auto known = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.first == name; });
+        const auto known = std::find(kTypes.begin(), kTypes.end(), name);
         if (known == kTypes.end())
             fail("a type: char, uchar, short, ushort, int, uint, float, double, or int8 to float64");
-        return known->second;
+        return static_cast<PlyType>((known - kTypes.begin()) % 8);
     }
 
     /// Before anything is allocated for the records.

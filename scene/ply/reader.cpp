@@ -1,11 +1,10 @@
 // PLY is read here and not by a library because none of Debian 12 reads it whole: OpenMesh cuts colours to 8 bits and
 // loses its place at lists, CGAL's functions know no colours but bytes, assimp none of faces, Draco no big-endian files.
-#include "scene/ply/reader.h"
-
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/text.h"
 #include "scene/ply/surface.h"
+#include "scene/readers.h"
 #include "scene/words.h"
 
 #include <fmt/format.h>
@@ -136,15 +135,13 @@ private:
 
     template <typename Use>
     void forRecords(PlyRecords& records, const PlyElement& element, Use&& use) {
-        Progress silent;
-        Progress& progress = options_.progress ? *options_.progress : silent;
-        progress.begin("read " + element.name, element.count);
+        options_.progress->begin("read " + element.name, element.count);
         for (std::uint64_t k = 0; k < element.count; ++k) {
             records.read(element, k);
             use();
-            if ((k + 1) % kReportEvery == 0) progress.advance(kReportEvery);
+            if ((k + 1) % kReportEvery == 0) options_.progress->advance(kReportEvery);
         }
-        progress.end();
+        options_.progress->end();
     }
 
     std::string file_;

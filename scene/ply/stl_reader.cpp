@@ -1,10 +1,9 @@
 // STL is read here and not by a library because those of Debian 12 drop what is wanted: CGAL and OpenMesh the solids' names
 // and degenerate facets, assimp binary files with bytes after the last facet.
-#include "scene/ply/reader.h"
-
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/text.h"
+#include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/words.h"
 
@@ -90,9 +89,7 @@ void readBinary(const std::string& file, std::string_view content, const ReadOpt
     if (const std::size_t used = kBegin + count * kFacetBytes; used < content.size())
         facets.builder().warn(fmt::format("{} bytes after the last facet were ignored", content.size() - used));
 
-    Progress silent;
-    Progress& progress = options.progress ? *options.progress : silent;
-    progress.begin("read facets", count);
+    options.progress->begin("read facets", count);
     for (std::size_t k = 0; k < count; ++k) {
         std::array<float, 12> numbers; // the normal, which is not used, and three vertices
         std::memcpy(numbers.data(), content.data() + kBegin + k * kFacetBytes, sizeof numbers);
@@ -102,9 +99,9 @@ void readBinary(const std::string& file, std::string_view content, const ReadOpt
             facets.addVertex(glm::dvec3(vertex));
         }
         facets.endFacet();
-        if ((k + 1) % kReportEvery == 0) progress.advance(kReportEvery);
+        if ((k + 1) % kReportEvery == 0) options.progress->advance(kReportEvery);
     }
-    progress.end();
+    options.progress->end();
 }
 
 /// Takes the statements of a text file, each a line, to its facets.

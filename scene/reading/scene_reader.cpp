@@ -2,10 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "scene/gltf/reader.h"
-#include "scene/mgf/reader.h"
-#include "scene/obj/reader.h"
-#include "scene/ply/reader.h"
+#include "scene/readers.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +49,9 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
                                      options.metresPerUnit));
     if (const Reader* reader = readerOf(path)) {
         std::vector<std::filesystem::path> files;
+        Progress silent;
         ReadOptions told = options;
+        if (told.progress == nullptr) told.progress = &silent;
         told.onFile = [&](const std::filesystem::path& file) {
             options.onFile(file);
             files.push_back(file);
@@ -62,9 +61,9 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
         const glm::dvec3 needed = result.report.neededOrigin;
         if (needed != glm::dvec3(0.0)) {
             result = {};
-            ReadOptions placed = options;
-            placed.origin = needed;
-            result = reader->read(path, placed);
+            told.origin = needed;
+            told.onFile = options.onFile;
+            result = reader->read(path, told);
         }
         result.report.files = std::move(files);
         return result;
