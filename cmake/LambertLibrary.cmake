@@ -1,7 +1,9 @@
 # Flags of Lambert's own targets, and a short form for "one static library per folder".
 add_library(lambert_options INTERFACE)
 target_include_directories(lambert_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(lambert_options INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+target_compile_options(lambert_options INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  # It takes every temporary that a function gets for what its result refers to.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
 target_compile_definitions(lambert_options INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR)
 target_link_libraries(lambert_options INTERFACE glm::glm)
 if(LAMBERT_SANITIZE)
