@@ -19,6 +19,7 @@ struct BakeArguments {
     std::filesystem::path outputDir;            //!< or empty
     std::filesystem::path solution;             //!< or empty; "{}" as in the picture's path
     std::string format;
+    std::string reconstruction = "average";
     std::string quantity = "radiosity";
     std::string exposure = "auto";
     bool perLight = false;
