@@ -3,6 +3,7 @@
 #include "cli/batch.h"
 #include "cli/batch_plan.h"
 #include "cli/commands.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 
@@ -33,9 +34,11 @@ BakeJob jobOfOneScene(const BakeArguments& a) {
 
 ExitCode bakeOneScene(const BakeArguments& a, const BakePlan& plan) {
     const BakeJob job = jobOfOneScene(a);
-    if (a.dryRun) return runBatch(a, plan, {job}, false);
-    checkTargets(targetsOf(a, job), inputsOf(a, job));
-    if (a.skipExisting) return runBatch(a, plan, {job}, false);
+    if (a.dryRun || a.skipExisting) return runBatch(a, plan, {job}, false);
+    std::vector<std::filesystem::path> targets = resultFiles(job);
+    const auto& rows = a.transport.checkpoint;
+    for (const auto& target : {a.run.json, rows, solverCheckpointPath(rows)}) targets.push_back(target);
+    checkTargets(targets, filesRead(a, job));
     setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
     SceneLog log(a.run.quiet, "", job.scene.string());

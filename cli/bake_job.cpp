@@ -3,7 +3,7 @@
 #include "cli/bake_verdict.h"
 #include "cli/light_files.h"
 #include "cli/overlap_text.h"
-#include "cli/targets.h"
+#include "cli/scene_files.h"
 #include "cli/terminal_text.h"
 
 #include "baking/exposure.h"
@@ -100,7 +100,7 @@ PictureArguments pictureArguments(const BakeArguments& a, const BakeJob& job) {
 }
 
 ReadResult readJob(const BakeArguments& a, const BakeJob& job, SceneLog& log, Progress& progress) {
-    ReadResult read = readScene(sceneOf(a, job), &progress, sparing(targetsOf(a, job)));
+    ReadResult read = readScene(sceneOf(a, job), &progress);
     if (!read.report.overrides.file.empty())
         log.line(fmt::format("{}: changes the scene (--no-overrides ignores it)", read.report.overrides.file.string()));
     for (const std::string& warning : read.report.warnings) log.warning(warning);
@@ -130,15 +130,7 @@ std::vector<fs::path> resultFiles(const BakeJob& job) {
     return files;
 }
 
-std::vector<fs::path> targetsOf(const BakeArguments& a, const BakeJob& job) {
-    std::vector<fs::path> files = resultFiles(job);
-    const fs::path& rows = a.transport.checkpoint;
-    for (const fs::path& file : {job.log, a.run.json, rows, solverCheckpointPath(rows)})
-        if (!file.empty()) files.push_back(file);
-    return files;
-}
-
-std::vector<fs::path> inputsOf(const BakeArguments& a, const BakeJob& job) {
+std::vector<fs::path> filesRead(const BakeArguments& a, const BakeJob& job) {
     std::vector<fs::path> files = inputFiles(sceneOf(a, job));
     addTransportInputs(a.transport, files);
     return files;
@@ -153,13 +145,11 @@ bool isUpToDate(const BakeArguments& a, const BakeJob& job) {
         oldest = oldest ? std::min(*oldest, time) : time;
     }
     if (!oldest) return false;
-    const auto isNewer = [&](const fs::path& input) {
+    const std::vector<fs::path> inputs = filesRead(a, job);
+    return std::none_of(inputs.begin(), inputs.end(), [&](const fs::path& input) {
         const fs::file_time_type time = fs::last_write_time(input, error);
         return !error && time > *oldest;
-    };
-    if (std::ranges::any_of(inputsOf(a, job), isNewer)) return false;
-    const ReadResult read = readScene(sceneOf(a, job), nullptr, sparing(targetsOf(a, job)));
-    return std::ranges::none_of(read.report.files, isNewer);
+    });
 }
 
 BakePlan planOf(const BakeArguments& a) {
@@ -203,9 +193,7 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakePlan& plan, const BakeJob&
     const Stopwatch writing;
     for (const BakeJob::Output& target : job.outputs) writeBaked(baked.baked, target.path, target.format, output);
     if (!job.solution.empty()) writeSolution(solutionOf(options.method, job, baked), job.solution);
-    std::vector<fs::path> inputs = inputsOf(a, job);
-    inputs.insert(inputs.end(), read.report.files.begin(), read.report.files.end());
-    const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, inputs);
+    const std::vector<WrittenLight> lights = writeLights(baked, job.outputs, output, filesRead(a, job));
     std::optional<Picture> shot;
     std::string pictureWarning;
     if (!job.image.empty()) {

@@ -36,14 +36,10 @@ SceneArguments sceneOf(const BakeArguments& arguments, const BakeJob& job);
 /// The files with the light: an OBJ comes with an MTL, then the picture and the solution. The log is not among them.
 std::vector<std::filesystem::path> resultFiles(const BakeJob& job);
 
-/// All that a job writes: these, its log, the report and checkpoints.
-std::vector<std::filesystem::path> targetsOf(const BakeArguments& arguments, const BakeJob& job);
+/// What a job is computed from: the scene's files, and those that options name.
+std::vector<std::filesystem::path> filesRead(const BakeArguments& arguments, const BakeJob& job);
 
-/// What is known to be read before the scene is, see inputFiles(), and what options name.
-std::vector<std::filesystem::path> inputsOf(const BakeArguments& arguments, const BakeJob& job);
-
-/// Whether all result files are there and none is older than one of the files that the scene is read from. Reads the scene where
-/// that alone can tell.
+/// Whether all result files are there and none is older than one of the files that the scene is read from.
 bool isUpToDate(const BakeArguments& arguments, const BakeJob& job);
 
 /// How one bake ended, or is predicted to end.

@@ -2,6 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/batch_table.h"
 #include "cli/failure.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
@@ -31,9 +32,11 @@ void createFolder(const fs::path& folder) {
 
 /// Everything that can keep a job from writing is found before hours of work.
 void prepareTargets(const BakeArguments& a, const BakeJob& job) {
-    for (const fs::path& target : resultFiles(job))
+    std::vector<fs::path> targets = resultFiles(job);
+    if (!job.log.empty()) targets.push_back(job.log);
+    for (const fs::path& target : targets)
         if (!a.outputDir.empty() && target.has_parent_path()) createFolder(target.parent_path());
-    checkTargets(targetsOf(a, job), inputsOf(a, job));
+    checkTargets(targets, filesRead(a, job));
 }
 
 /// An abandoned job leaves nothing, not even a log.

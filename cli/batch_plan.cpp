@@ -1,4 +1,5 @@
 #include "cli/batch_plan.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 
 #include "core/error.h"
@@ -108,45 +109,47 @@ fs::path canonicalPath(const fs::path& path) {
     return error ? absolutePath(path) : whole;
 }
 
+std::vector<fs::path> allTargets(const BakeJob& job) {
+    std::vector<fs::path> files = resultFiles(job);
+    if (!job.log.empty()) files.push_back(job.log);
+    return files;
+}
+
 /// Throws UsageError if two of the files to be written are one.
-void refuseClashes(const BakeArguments& a, const std::vector<BakeJob>& jobs) {
+void refuseClashes(const std::vector<BakeJob>& jobs, const fs::path& json) {
     std::map<fs::path, std::string> writers;
-    if (!a.run.json.empty()) writers.emplace(canonicalPath(a.run.json), "--json");
-    for (const BakeJob& job : jobs) {
-        std::vector<fs::path> targets = resultFiles(job);
-        if (!job.log.empty()) targets.push_back(job.log);
-        for (const fs::path& target : targets) {
+    if (!json.empty()) writers.emplace(canonicalPath(json), "--json");
+    for (const BakeJob& job : jobs)
+        for (const fs::path& target : allTargets(job)) {
             const auto [other, isNew] = writers.emplace(canonicalPath(target), job.scene.string());
             if (!isNew)
                 throw UsageError(fmt::format("{} and {} would both be written to {}", other->second, job.scene.string(),
                                              target.string()));
         }
-    }
 }
 
 /// Throws UsageError if a file to be written is one that some scene is read from.
 void refuseOverwriting(const BakeArguments& a, const std::vector<BakeJob>& jobs) {
-    std::set<fs::path> existing;
+    const fs::path& json = a.run.json;
+    std::vector<fs::path> existing;
     std::error_code ignored;
     for (const BakeJob& job : jobs)
-        for (const fs::path& target : targetsOf(a, job))
-            if (fs::exists(target, ignored)) existing.insert(canonicalPath(target));
-    if (existing.empty()) return; // spares reading the scenes
-    const auto refuse = [&](const fs::path& input) {
-        if (existing.contains(canonicalPath(input)))
-            throw UsageError(fmt::format("{}: would overwrite what is read", input.string()));
-    };
+        std::ranges::copy_if(allTargets(job), std::back_inserter(existing),
+                             [&](const fs::path& target) { return fs::exists(target, ignored); });
+    if (!json.empty() && fs::exists(json, ignored)) existing.push_back(json);
+    if (existing.empty()) return; // spares looking into the scenes
+
+    std::set<fs::path> inputs;
     for (const BakeJob& job : jobs) {
-        std::ranges::for_each(inputsOf(a, job), refuse);
-        const fs::path folder = canonicalPath(absolutePath(job.scene).parent_path());
-        const auto next = existing.lower_bound(folder);
-        const bool allElsewhere = next == existing.end() || commonFolder(folder, *next) != folder;
-        if (allElsewhere && !a.scene.allowOutsideFiles) continue; // then the scene cannot name one of them
         try {
-            readScene(sceneOf(a, job), nullptr, refuse);
+            for (const fs::path& input : filesRead(a, job)) inputs.insert(canonicalPath(input));
         } catch (const InputError&) { // the job itself will say so
+            inputs.insert(canonicalPath(job.scene));
         }
     }
+    for (const fs::path& target : existing)
+        if (inputs.contains(canonicalPath(target)))
+            throw UsageError(fmt::format("{}: would overwrite what is read", target.string()));
 }
 
 } // namespace
@@ -158,7 +161,7 @@ std::vector<BakeJob> planBatch(const BakeArguments& a) {
     if (jobs.size() > 1 && !a.picture.path.empty() && jobs[0].image == jobs[1].image)
         throw UsageError("--image: one picture for several scenes; write {} where the scene's name belongs, as in " +
                          (a.picture.path.parent_path() / "{}").string() + a.picture.path.extension().string());
-    refuseClashes(a, jobs);
+    refuseClashes(jobs, a.run.json);
     refuseOverwriting(a, jobs);
     return jobs;
 }

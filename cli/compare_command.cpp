@@ -2,7 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/compare_folder.h"
-#include "cli/targets.h"
+#include "cli/scene_files.h"
 #include "cli/terminal_progress.h"
 #include "cli/validators.h"
 
@@ -97,13 +97,13 @@ ExitCode compareFormFactors(const CompareFormFactorsArguments& a) {
     checkPicture(a.picture);
     std::vector<fs::path> inputs = inputFiles(a.scene);
     if (!options.reference.file.empty()) inputs.push_back(options.reference.file);
-    const std::vector<fs::path> targets = checkPageFolder(a.output, std::array{a.run.json}, inputs);
+    checkPageFolder(a.output, std::array{a.run.json}, inputs);
     requireGnuplot();
 
     setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
     const Stopwatch watch;
-    const ReadResult read = readScene(a.scene, &progress, sparing(targets));
+    const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const MeshedScene scene = meshScene(read.scene, mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);

@@ -18,17 +18,18 @@ std::string versionText() {
     return fmt::format("version {}, {} thread{}", LAMBERT_VERSION, threads, threads == 1 ? "" : "s");
 }
 
-std::vector<fs::path> checkPageFolder(const fs::path& folder, std::span<const fs::path> others,
-                                      std::span<const fs::path> inputs) {
+void checkPageFolder(const fs::path& folder, std::span<const fs::path> others, std::span<const fs::path> inputs) {
     std::vector<fs::path> targets(others.begin(), others.end());
     std::error_code ignored;
-    if (fs::exists(folder, ignored))
+    if (fs::exists(folder, ignored)) {
         for (const char* file : {"index.html", "results.json", "results.csv"}) targets.push_back(folder / file);
+        checkTargets(targets, inputs);
+        return;
+    }
     checkTargets(targets, inputs);
     fs::path existing = fs::absolute(folder);
     while (existing.has_relative_path() && !fs::exists(existing, ignored)) existing = existing.parent_path();
     requireWritable(existing / "index.html");
-    return targets;
 }
 
 void writePageFolder(const RunArguments& run, const fs::path& folder, std::vector<FileContent> page, std::string csv,

@@ -15,10 +15,8 @@ namespace lambert {
 
 /// What can keep the page from being written is found before the work: to be called before it. A folder that is missing is made
 /// after it. `others` are further files that will be written; empty ones are none. Throws UsageError, SystemError.
-/// Returns the files that are known to be written.
-std::vector<std::filesystem::path> checkPageFolder(const std::filesystem::path& folder,
-                                                   std::span<const std::filesystem::path> others,
-                                                   std::span<const std::filesystem::path> inputs);
+void checkPageFolder(const std::filesystem::path& folder, std::span<const std::filesystem::path> others,
+                     std::span<const std::filesystem::path> inputs);
 
 /// Which Lambert compared, and on how many threads, for the page.
 std::string versionText();

@@ -2,7 +2,7 @@
 #include "cli/bake_report.h"
 #include "cli/commands.h"
 #include "cli/compare_folder.h"
-#include "cli/targets.h"
+#include "cli/scene_files.h"
 #include "cli/terminal_progress.h"
 #include "cli/validators.h"
 
@@ -152,13 +152,13 @@ ExitCode compareVpl(const CompareVplArguments& a) {
     MeshOptions mesh = meshOptions(a.transport);
     mesh.refinement *= kCoarser;
     checkPicture(a.picture);
-    const std::vector<fs::path> targets = checkPageFolder(a.output, std::array{a.run.json}, inputFiles(a.scene));
+    checkPageFolder(a.output, std::array{a.run.json}, inputFiles(a.scene));
     requireGnuplot();
 
     setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
     const Stopwatch watch;
-    const ReadResult read = readScene(a.scene, &progress, sparing(targets));
+    const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const MeshedScene scene = meshLitScene(read.scene, mesh, progress);
     const Picture shot = picture(a.picture, *scene.scene, *scene.rays);

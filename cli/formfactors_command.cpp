@@ -3,6 +3,7 @@
 #include "cli/formfactors_report.h"
 #include "cli/overlap_text.h"
 #include "cli/points_file.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 #include "cli/terminal_text.h"
@@ -68,8 +69,7 @@ void check(const FormFactorsArguments& a) {
     if (task != Task::Groups && !a.output.empty()) checkMatrixFile(a.output, 0);
 }
 
-/// What is written, checked.
-std::vector<fs::path> targetsOf(const FormFactorsArguments& a) {
+void checkFiles(const FormFactorsArguments& a) {
     std::vector<fs::path> inputs = inputFiles(a.scene);
     for (const fs::path& input : {a.points, a.temperatures, a.transport.formFactors})
         if (!input.empty()) inputs.push_back(input);
@@ -77,14 +77,12 @@ std::vector<fs::path> targetsOf(const FormFactorsArguments& a) {
     if (!a.output.empty() && taskOf(a) == Task::Matrix) targets.push_back(matrixFiles(a.output, 0).back());
     if (!a.output.empty() && taskOf(a) == Task::Points) targets.push_back(pointRowFiles(a.output).back());
     checkTargets(targets, inputs);
-    return targets;
 }
 
 /// One run of the command: what it found, on its way into files and the report.
 struct Run {
     const FormFactorsArguments& a;
     const MatrixSource source;
-    const std::vector<fs::path> targets;
     TerminalProgress& progress;
     ReadResult read{};
     MeshedScene scene{};
@@ -115,7 +113,7 @@ void warnOfBacks(Run& run, double back) {
 
 void readAndMesh(Run& run) {
     Stopwatch watch;
-    run.read = readScene(run.a.scene, &run.progress, sparing(run.targets));
+    run.read = readScene(run.a.scene, &run.progress);
     run.seconds["read"] = watch.lap();
     logReport(run.a.run, run.read.report);
     run.warnings = run.read.report.warnings;
@@ -317,11 +315,11 @@ ExitCode formFactors(const FormFactorsArguments& a) {
     MatrixSource source = matrixSource(a.transport, a.run);
     if (!source.transport.stored) throw UsageError("--storage none: is for solvers; form factors are a matrix");
     if (!a.temperatures.empty()) source.repair = true; // or flows do not add up
-    const std::vector<fs::path> targets = targetsOf(a);
+    checkFiles(a);
     setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
     const Stopwatch total;
-    Run run{a, source, targets, progress};
+    Run run{a, source, progress};
     readAndMesh(run);
     if (taskOf(a) == Task::Points)
         computePoints(run);

@@ -3,11 +3,12 @@
 #include "cli/commands.h"
 #include "cli/info_report.h"
 #include "cli/scene_facts.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 
+#include <array>
 #include <memory>
-#include <vector>
 
 namespace lambert {
 
@@ -19,10 +20,9 @@ struct InfoArguments {
 };
 
 ExitCode info(const InfoArguments& a) {
-    const std::vector targets{a.run.json};
-    checkTargets(targets, inputFiles(a.scene));
+    checkTargets(std::array{a.run.json}, inputFiles(a.scene));
     TerminalProgress progress(a.run.quiet);
-    const ReadResult read = readScene(a.scene, &progress, sparing(targets));
+    const ReadResult read = readScene(a.scene, &progress);
     logReport(a.run, read.report);
     const SceneFacts facts = gatherFacts(read.scene, progress);
     const InfoReportInput report{a.scene.path, read, facts,

@@ -3,6 +3,7 @@
 #include "cli/bake_verdict.h"
 #include "cli/commands.h"
 #include "cli/points_file.h"
+#include "cli/scene_files.h"
 #include "cli/targets.h"
 #include "cli/terminal_progress.h"
 
@@ -14,8 +15,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
-#include <vector>
 
 namespace lambert {
 
@@ -56,13 +57,12 @@ ExitCode probe(const ProbeArguments& a) {
     inputs.push_back(a.points);
     addTransportInputs(a.transport, inputs);
     const auto& rows = a.transport.checkpoint;
-    const std::vector targets{a.output, a.run.json, rows, solverCheckpointPath(rows)};
-    checkTargets(targets, inputs);
+    checkTargets(std::array{a.output, a.run.json, rows, solverCheckpointPath(rows)}, inputs);
     setThreadCount(a.run.threads);
     TerminalProgress progress(a.run.quiet);
     const Stopwatch total;
     const std::vector<SensorPoint> points = readPoints(a.points);
-    ReadResult read = readScene(a.scene, &progress, sparing(targets));
+    ReadResult read = readScene(a.scene, &progress);
     addDaylight(read.scene, a.transport.light);
     const double readSeconds = total.seconds();
     logReport(a.run, read.report);

@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "scene/reading/changed_scene.h"
-#include "scene/reading/overrides_file.h"
 
 #include <fmt/format.h>
 
@@ -95,12 +94,7 @@ bool unitIsGiven(const SceneArguments& a, const AppliedOverrides& overrides) {
     return a.unit || overrides.metresPerUnit != 1.0 || isInMetres(a.path);
 }
 
-std::vector<std::filesystem::path> inputFiles(const SceneArguments& a) {
-    return {a.path, a.overrides.empty() ? overridesFileBeside(a.path) : a.overrides};
-}
-
-ReadResult readScene(const SceneArguments& a, Progress* progress,
-                     std::function<void(const std::filesystem::path&)> onFile) {
+ReadResult readScene(const SceneArguments& a, Progress* progress) {
     if (a.unit && !(*a.unit > 0.0 && std::isfinite(*a.unit)))
         throw UsageError(fmt::format("--unit: found {}, allowed is a number above 0", *a.unit));
     return readChangedScene(a.path, changesOf(a),
@@ -108,8 +102,7 @@ ReadResult readScene(const SceneArguments& a, Progress* progress,
                              .allowOutsideFiles = a.allowOutsideFiles,
                              .progress = progress,
                              .curveSegments = a.curveSegments,
-                             .mostPolygons = a.mostPolygons,
-                             .onFile = std::move(onFile)});
+                             .mostPolygons = a.mostPolygons});
 }
 
 } // namespace lambert

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,13 +31,9 @@ struct SceneArguments {
 void addSceneArguments(CLI::App& command, SceneArguments& arguments);
 void addSceneOptions(CLI::App& command, SceneArguments& arguments); ///< the same without the scene's path
 
-/// What is known to be read before the scene is: its own file, and the file of overrides, whether it is used or not.
-std::vector<std::filesystem::path> inputFiles(const SceneArguments& arguments);
-
 /// Reads the scene and makes the changes that the overrides file and the options ask for; options win. What was changed
-/// stands in the report. `onFile`: see ReadOptions. Throws InputError, UsageError, Cancelled.
-ReadResult readScene(const SceneArguments& arguments, Progress* progress,
-                     std::function<void(const std::filesystem::path&)> onFile);
+/// stands in the report. Throws InputError, UsageError, Cancelled.
+ReadResult readScene(const SceneArguments& arguments, Progress* progress = nullptr);
 
 /// Whether the lengths of the scene are settled: by an option, the overrides file, or because it is glTF.
 bool unitIsGiven(const SceneArguments& arguments, const AppliedOverrides& overrides);

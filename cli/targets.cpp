@@ -20,18 +20,7 @@ bool sameFile(const fs::path& a, const fs::path& b) {
     return !error && wholeA == wholeB;
 }
 
-void refuseOverwriting(const fs::path& target, const fs::path& input, const char* what) {
-    if (!target.empty() && sameFile(target, input))
-        throw UsageError(fmt::format("{}: would overwrite {}", target.string(), what));
-}
-
 } // namespace
-
-std::function<void(const fs::path&)> sparing(std::vector<fs::path> targets) {
-    return [targets = std::move(targets)](const fs::path& file) {
-        for (const fs::path& target : targets) refuseOverwriting(target, file, "what is read");
-    };
-}
 
 void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> inputs) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -40,7 +29,9 @@ void checkTargets(std::span<const fs::path> targets, std::span<const fs::path> i
             throw UsageError(fmt::format("{0}: is an option where a file is to be named; if it is one, write ./{0}",
                                          targets[i].string()));
         for (const fs::path& input : inputs)
-            refuseOverwriting(targets[i], input, sameFile(input, inputs.front()) ? "the scene" : "what is read");
+            if (sameFile(targets[i], input))
+                throw UsageError(fmt::format("{}: would overwrite {}", targets[i].string(),
+                                             sameFile(input, inputs.front()) ? "the scene" : "what is read"));
         for (std::size_t j = 0; j < i; ++j)
             if (!targets[j].empty() && sameFile(targets[i], targets[j]))
                 throw UsageError(fmt::format("{}: named twice as a target", targets[i].string()));

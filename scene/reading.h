@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +24,6 @@ struct ReadOptions {
     std::size_t mostPolygons = 0;
     /// Metres, the scene's: see Scene::origin. None: readScene finds it, the readers behind it take 0 0 0.
     std::optional<glm::dvec3> origin{};
-    /// Told each file that the scene consists of, before that is looked for; may throw.
-    std::function<void(const std::filesystem::path&)> onFile = [](const std::filesystem::path&) {};
 };
 
 /// What a user changed of a scene, and how.
@@ -48,9 +45,7 @@ struct ReadReport {
     /// good as it can be, and may be empty.
     glm::dvec3 neededOrigin{0.0};
     std::vector<std::string> warnings; //!< one line each, with the file's name
-    std::vector<std::filesystem::path>
-        files;                  //!< the scene's own, then those that it names, whether they are there or not
-    AppliedOverrides overrides; //!< made after reading
+    AppliedOverrides overrides;        //!< made after reading
 };
 
 struct ReadResult {

@@ -142,11 +142,7 @@ std::shared_ptr<const Texture> SceneBuilder::textureOrNull(const std::string& na
 std::shared_ptr<const Texture> SceneBuilder::readTextureFile(const std::filesystem::path& folder,
                                                              const std::string& name, TextureContent content,
                                                              const std::string& replacement) {
-    return textureOrNull(name, replacement, [&] {
-        const std::filesystem::path path = namedFile(folder, name, options_);
-        options_.onFile(path);
-        return readTexture(path, content);
-    });
+    return textureOrNull(name, replacement, [&] { return readTexture(namedFile(folder, name, options_), content); });
 }
 
 std::shared_ptr<const Texture> SceneBuilder::readTextureBytes(std::span<const std::uint8_t> bytes,

@@ -22,7 +22,6 @@ std::vector<unsigned char> fileContent(const std::string& file, const std::strin
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}: {}", file, member, error.what()));
     }
-    options.onFile(target);
     std::error_code error;
     if (uri.empty() || !std::filesystem::is_regular_file(target, error))
         failAtMember(file, member, inQuotes(uri), "the name of a file that exists");

@@ -1,6 +1,10 @@
 #include "scene/mgf/file.h"
 
+#include "core/error.h"
 #include "core/input_file.h"
+#include "core/text.h"
+#include "scene/named_file.h"
+#include "scene/reading.h"
 #include "scene/words.h"
 
 #include <fmt/format.h>
@@ -8,12 +12,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace lambert {
 
 namespace {
 
+constexpr std::string_view kExtension = ".mgf";
 constexpr std::string_view kSpaces = " \t\v\f\r\n";
 
 std::string placeIn(const std::string& file, std::size_t line) {
@@ -105,6 +111,37 @@ std::string MgfFile::place(std::size_t line) const { return placeIn(name_, line)
 
 std::filesystem::path includedName(const MgfFile& includer, const MgfEntity& include) {
     return (includer.nameInScene().parent_path() / std::filesystem::path(include.argument(0))).lexically_normal();
+}
+
+bool isMgf(const std::filesystem::path& path) { return lowerCase(path.extension().string()) == kExtension; }
+
+std::vector<std::filesystem::path> filesOfMgf(const std::filesystem::path& path) {
+    const std::filesystem::path folder = path.parent_path();
+    ReadOptions anywhere;
+    anywhere.allowOutsideFiles = true; // reading decides about that; here every file counts
+    std::vector<std::filesystem::path> files{path}, names{path.filename()};
+    const auto canonical = [](const std::filesystem::path& file) {
+        std::error_code error;
+        return std::filesystem::weakly_canonical(file, error).string();
+    };
+    std::set<std::string> known{canonical(path)};
+    for (std::size_t next = 0; next < files.size(); ++next) {
+        try {
+            const MgfFile file(files[next], names[next]);
+            for (std::size_t k = 0; k < file.size(); ++k) {
+                const MgfEntity entity = file.entity(k);
+                if (entity.keyword() != "i" || entity.argumentCount() == 0) continue;
+                const std::filesystem::path name = includedName(file, entity);
+                const std::filesystem::path included = namedFile(folder, name.string(), anywhere);
+                if (!known.insert(canonical(included)).second) continue;
+                files.push_back(included);
+                names.push_back(name);
+            }
+        } catch (const InputError&) {
+            continue; // reported when the scene is read
+        }
+    }
+    return files;
 }
 
 } // namespace lambert

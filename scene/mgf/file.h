@@ -66,6 +66,12 @@ private:
     std::vector<Line> lines_;
 };
 
+/// By its extension, whatever the case of its letters.
+bool isMgf(const std::filesystem::path& path);
+
+/// The MGF file at `path` and all that it includes, each once. Files that cannot be read are listed, but not searched.
+std::vector<std::filesystem::path> filesOfMgf(const std::filesystem::path& path);
+
 /// The file that the entity `i` names, relative to the scene's folder.
 std::filesystem::path includedName(const MgfFile& includer, const MgfEntity& include);
 

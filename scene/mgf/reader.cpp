@@ -223,7 +223,6 @@ private:
         std::error_code error;
         auto& file = files_[std::filesystem::weakly_canonical(path, error).string()];
         if (!file) {
-            if (!includes_.empty()) options_.onFile(path);
             file = std::make_unique<MgfFile>(path, nameInScene);
             if (!includes_.empty()) builder_.countBytes(std::filesystem::file_size(path, error));
         }

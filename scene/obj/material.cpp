@@ -75,7 +75,6 @@ void ObjMaterials::addLibrary(const std::string& name) {
     try {
         const std::filesystem::path path = namedFile(folder_, name, options_);
         if (!libraries_.insert(path).second) return;
-        options_.onFile(path);
         lines.emplace(path);
     } catch (const InputError& error) {
         builder_.warnUnlessStrict(fmt::format("mtllib {}", error.what()));

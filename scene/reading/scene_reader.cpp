@@ -48,25 +48,15 @@ ReadResult readScene(const std::filesystem::path& path, const ReadOptions& optio
         throw UsageError(fmt::format("--unit: found {}, expected metres per unit of the file, a number above 0",
                                      options.metresPerUnit));
     if (const Reader* reader = readerOf(path)) {
-        std::vector<std::filesystem::path> files;
         Progress silent;
-        ReadOptions told = options;
-        if (told.progress == nullptr) told.progress = &silent;
-        told.onFile = [&](const std::filesystem::path& file) {
-            options.onFile(file);
-            files.push_back(file);
-        };
-        told.onFile(path);
-        ReadResult result = reader->read(path, told);
+        ReadOptions placed = options;
+        if (placed.progress == nullptr) placed.progress = &silent;
+        ReadResult result = reader->read(path, placed);
         const glm::dvec3 needed = result.report.neededOrigin;
-        if (needed != glm::dvec3(0.0)) {
-            result = {};
-            told.origin = needed;
-            told.onFile = options.onFile;
-            result = reader->read(path, told);
-        }
-        result.report.files = std::move(files);
-        return result;
+        if (needed == glm::dvec3(0.0)) return result;
+        result = {};
+        placed.origin = needed;
+        return reader->read(path, placed);
     }
     throw InputError(fmt::format("{}: found the extension {}, allowed are {}", path.string(),
                                  inQuotes(path.extension().string()), sceneExtensions()));

@@ -180,13 +180,8 @@ class WrongTargets(ErrorTest):
     def test_images_of_a_ply_and_of_a_glb_are_not_overwritten(self):
         (self.folder / "image.glb").write_bytes(b"image")
         ply = self.folder / "scene.ply"
-        ply.write_bytes(b"ply\nformat ascii 1.0\ncomment TextureFile image.glb\nelement vertex 3\nproperty float x\n"
-                        b"property float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\n"
-                        b"property list uchar int vertex_indices\nend_header\n"
-                        b"0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n")
-        document = json.dumps({
-            "asset": {"version": "2.0"}, "images": [{"uri": "image.glb"}], "textures": [{"source": 0}],
-            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}]}).encode()
+        ply.write_bytes(b"ply\nformat ascii 1.0\ncomment TextureFile image.glb\nelement vertex 0\nend_header\n")
+        document = json.dumps({"asset": {"version": "2.0"}, "images": [{"uri": "image.glb"}]}).encode()
         document += b" " * (-len(document) % 4)
         glb = self.folder / "scene.glb"
         glb.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(document), len(document), 0x4E4F534A) + document)
