@@ -13,6 +13,8 @@ namespace {
 
 double power4(double kelvin) { return kelvin * kelvin * kelvin * kelvin; }
 
+constexpr double kNothing = 1e-150; ///< W/m²: squares of less may be 0
+
 } // namespace
 
 double HeatFlow::imbalance() const { return std::accumulate(flow.begin(), flow.end(), environmentFlow + backFlow); }
@@ -32,7 +34,7 @@ HeatFlow solveHeatFlow(const FormFactorMatrix& matrix, std::span<const float> ar
         reflectance[i] = surface.kelvin ? 1.0 - surface.emissivity : 1.0;
         emitted[i] = (1.0 - reflectance[i]) * kStefanBoltzmann * power4(surface.kelvin.value_or(0.0));
         fromOutside[i] = RgbSum(matrix.out(i) * environment);
-        emits = emits || emitted[i] + fromOutside[i].x > 0.0;
+        emits = emits || emitted[i] + fromOutside[i].x > kNothing;
     }
     if (!fixed)
         throw InputError("no surface has a temperature and an emissivity above 0: nothing settles the radiation");
