@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace lambert {

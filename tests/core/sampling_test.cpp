@@ -8,6 +8,7 @@
 #include <boost/random/sobol.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
