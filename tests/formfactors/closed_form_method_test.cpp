@@ -206,8 +206,8 @@ TEST(ClosedFormMethod, WhatLeavesAnOpenSceneIsOut) {
     EXPECT_EQ(row[2], 0.0);
 }
 
-// The sheet's left half is a hole: what passes is what the right half alone would let pass. 64 rays across the sheet's
-// 1.5 see the hole's edge in steps of 1 %, which cancel over the other 63 rows.
+// The sheet's left half is a hole: what passes is what the right half alone would let pass, but for the one column of 64 rays across the
+// sheet that lies on the hole's edge in all rows, by symmetry: there the rounding of a processor decides.
 TEST(ClosedFormMethod, LightPassesThroughHoles) {
     Scene scene = facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F));
     openLeftHalf(scene, scene.polygons[2]);
@@ -216,7 +216,7 @@ TEST(ClosedFormMethod, LightPassesThroughHoles) {
     std::array<glm::vec3, 4> half = square(0.5F, 0.5F, 0.5F, 0.5F);
     half[0].x = half[3].x = 0.5F;
     const ClosedFormCase solid(facingSquares(half));
-    EXPECT_NEAR(holed.row(0)[1], solid.row(0)[1], 0.01 * solid.row(0)[1]);
+    EXPECT_NEAR(holed.row(0)[1], solid.row(0)[1], solid.row(0)[1] / 64.0);
     EXPECT_GT(holed.row(0)[1], 1.1 * ClosedFormCase(facingSquares(square(0.5F, 0.5F, 0.5F, 0.5F))).row(0)[1]);
 }
 
