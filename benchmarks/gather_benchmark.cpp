@@ -104,16 +104,7 @@ std::vector<ShadowPacket> shadowPackets(const std::vector<VirtualPointLight>& li
             packets.emplace_back();
             lane = 0;
         }
-        ShadowPacket& rays = packets.back();
-        rays.originX[lane] = origin.x;
-        rays.originY[lane] = origin.y;
-        rays.originZ[lane] = origin.z;
-        rays.directionX[lane] = direction.x;
-        rays.directionY[lane] = direction.y;
-        rays.directionZ[lane] = direction.z;
-        rays.maxDistance[lane] = 1.0F;
-        rays.active[lane] = -1;
-        ++lane;
+        packets.back().set(lane++, {origin, direction, 1.0F});
     });
     return packets;
 }

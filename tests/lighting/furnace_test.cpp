@@ -84,7 +84,6 @@ class FurnaceByFormFactors : public testing::TestWithParam<std::tuple<TransportM
 // the area where it is not.
 TEST_P(FurnaceByFormFactors, HasItsRadiosityOnEveryPatch) {
     const auto [method, solver, stored] = GetParam();
-    if (!stored && !hasRows(method)) GTEST_SKIP() << "is known only as a whole";
     FormFactorLight light;
     TransportOptions& transport = light.formFactors.transport;
     transport.method = method;
@@ -100,24 +99,29 @@ TEST_P(FurnaceByFormFactors, HasItsRadiosityOnEveryPatch) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, FurnaceByFormFactors,
+constexpr auto kFormFactorName = [](const auto& one) {
+    return plain(nameOf(std::get<0>(one.param))) + "_" + plain(nameOf(std::get<1>(one.param)));
+};
+const auto kSolvers = testing::Values(SolverMethod::Jacobi, SolverMethod::GaussSeidel, SolverMethod::Southwell,
+                                      SolverMethod::ConjugateGradient);
+INSTANTIATE_TEST_SUITE_P(Stored, FurnaceByFormFactors,
                          testing::Combine(testing::Values(TransportMethod::Auto, TransportMethod::Hemicube,
                                                           TransportMethod::Hemisphere, TransportMethod::LocalLines,
                                                           TransportMethod::GlobalLines, TransportMethod::ClosedForm),
-                                          testing::Values(SolverMethod::Jacobi, SolverMethod::GaussSeidel,
-                                                          SolverMethod::Southwell, SolverMethod::ConjugateGradient),
-                                          testing::Bool()),
-                         [](const auto& one) {
-                             return plain(nameOf(std::get<0>(one.param))) + "_" +
-                                    plain(nameOf(std::get<1>(one.param))) + (std::get<2>(one.param) ? "" : "_rowByRow");
-                         });
+                                          kSolvers, testing::Values(true)),
+                         kFormFactorName);
+// Global lines know no single rows.
+INSTANTIATE_TEST_SUITE_P(RowByRow, FurnaceByFormFactors,
+                         testing::Combine(testing::Values(TransportMethod::Auto, TransportMethod::Hemicube,
+                                                          TransportMethod::Hemisphere, TransportMethod::LocalLines,
+                                                          TransportMethod::ClosedForm),
+                                          kSolvers, testing::Values(false)),
+                         kFormFactorName);
 
 class FurnaceByLines : public testing::TestWithParam<std::tuple<LineSolver, RelaxationLines, Sampler>> {};
 
 TEST_P(FurnaceByLines, HasItsRadiosityInTheMean) {
     const auto [solver, lines, sampler] = GetParam();
-    if (solver == LineSolver::RandomWalk && lines == RelaxationLines::Global)
-        GTEST_SKIP() << "walks have no global lines";
     LineSolverOptions options{.solver = solver, .rays = 50'000, .lines = lines, .sampler = sampler};
     expectFurnace(
         [&](std::uint64_t seed) {
@@ -127,15 +131,19 @@ TEST_P(FurnaceByLines, HasItsRadiosityInTheMean) {
         200, 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, FurnaceByLines,
+constexpr auto kLineName = [](const auto& one) {
+    return plain(nameOf(std::get<0>(one.param))) + (std::get<2>(one.param) == Sampler::Random ? "_random" : "_sobol");
+};
+const auto kSamplers = testing::Values(Sampler::Sobol, Sampler::Random);
+INSTANTIATE_TEST_SUITE_P(Local, FurnaceByLines,
                          testing::Combine(testing::Values(LineSolver::Stochastic, LineSolver::RandomWalk),
-                                          testing::Values(RelaxationLines::Local, RelaxationLines::Global),
-                                          testing::Values(Sampler::Sobol, Sampler::Random)),
-                         [](const auto& one) {
-                             return plain(nameOf(std::get<0>(one.param))) +
-                                    (std::get<1>(one.param) == RelaxationLines::Global ? "_global" : "_local") +
-                                    (std::get<2>(one.param) == Sampler::Random ? "_random" : "_sobol");
-                         });
+                                          testing::Values(RelaxationLines::Local), kSamplers),
+                         kLineName);
+// Walks have no global lines.
+INSTANTIATE_TEST_SUITE_P(Global, FurnaceByLines,
+                         testing::Combine(testing::Values(LineSolver::Stochastic),
+                                          testing::Values(RelaxationLines::Global), kSamplers),
+                         kLineName);
 
 class FurnaceByVirtualLights : public testing::TestWithParam<std::tuple<Walk, Sampler, bool>> {};
 
