@@ -4,6 +4,7 @@
 #include "baking/reconstruction.h"
 #include "lighting/solve_scene.h"
 
+#include <optional>
 #include <vector>
 
 namespace lambert {
@@ -12,6 +13,7 @@ namespace lambert {
 struct BakeOptions {
     SolveOptions solve;
     ReconstructionOptions reconstruction{};
+    std::optional<FinalGatherOptions> gather{}; //!< light is gathered at the vertices; else averaged
     bool perLight = false; //!< each group of lights on its own as well
 };
 
@@ -19,6 +21,7 @@ struct BakeOptions {
 struct BakedScene : SolvedScene {
     BakedMesh baked{};
     std::vector<BakedLight> lights{}; //!< with BakeOptions::perLight; they add up to `baked` as far as the solver goes
+    std::optional<GatherReport> gather{};  //!< with BakeOptions::gather
     std::size_t separatedFaces = 0;   //!< see reconstructAverage
     double bakeSeconds = 0.0;
 };

@@ -3,6 +3,7 @@
 #include "baking/reconstruction.h"
 #include "lighting/solve_scene.h"
 
+#include <optional>
 #include <vector>
 
 namespace lambert {
@@ -18,8 +19,9 @@ struct BakedLight {
     std::vector<bool> emitters;             //!< #faces, as BakedMesh::emitters
 };
 
-/// Reconstructs the light of a group of `scene`.
-BakedLight bakeLight(const SolvedScene& scene, SolvedLight light, const ReconstructionOptions& options);
+/// Reconstructs the light of a group of `scene`; gathers it if told how. Throws Cancelled.
+BakedLight bakeLight(const SolvedScene& scene, SolvedLight light, const ReconstructionOptions& options,
+                     const std::optional<FinalGatherOptions>& gather, Progress& progress);
 
 /// The mesh as this group alone lights it. `mesh` is the one that the whole was baked to; its `shown` quantity still decides where
 /// quads are split, so that files of all groups have the same vertices and triangles.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "baking/reconstruction.h"
+#include "baking/final_gather.h"
 #include "lighting/solve_scene.h"
 
 #include <span>
@@ -22,16 +22,10 @@ struct ProbeReading {
     bool onSurface = false;    //!< within 1e-4 of the scene's diagonal of a front that has about this normal
 };
 
-/// The irradiance at points, #points readings. Direct light, of emitters and of lights without area, is found at the point itself by
-/// shadow rays. All other light is interpolated between the vertices of the patch, at points on surfaces, and gathered at
-/// others, by rows of the form factors that `options` (those of the solve) name; if they name none, by those of the default
-/// method, and of lines without rows by local lines.
+/// The irradiance at points, #points readings, gathered at the points themselves (see FinalGather), on surfaces and in the air.
 ///
-/// Errors are of shadow rays, and of gathered rows by the spread of four with other random numbers. On a surface they hold by how
-/// much interpolation misses the patch's own value at its centre, which is as much of the mesh and of a noisy row as can be
-/// told, and the patch's standard error where the solution has one. Throws UsageError, Cancelled.
-std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const SolveOptions& options,
-                                          const ReconstructionOptions& reconstruction,
+/// Errors are those of the gather's rays. Throws UsageError for options out of range, Cancelled.
+std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalGatherOptions& options,
                                           std::span<const ProbePoint> points, Progress& progress);
 
 } // namespace lambert

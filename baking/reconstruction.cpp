@@ -1,5 +1,8 @@
 #include "baking/reconstruction.h"
 
+#include "baking/vertex_places.h"
+#include "core/parallel.h"
+#include "formfactors/matrix_quality.h"
 #include "meshing/half_edge_mesh.h"
 
 #include <glm/common.hpp>
@@ -17,14 +20,7 @@ namespace {
 
 /// Lets a vertex that has nothing but covered patches keep their mean.
 constexpr double kSmallestOpenness = 1e-4;
-
-double angleAt(const PatchMesh& mesh, std::size_t patch, int k) {
-    const int count = mesh.cornerCount(patch);
-    const glm::dvec3 here(mesh.position(patch, k));
-    const glm::dvec3 next = glm::dvec3(mesh.position(patch, (k + 1) % count)) - here;
-    const glm::dvec3 previous = glm::dvec3(mesh.position(patch, (k + count - 1) % count)) - here;
-    return std::atan2(glm::length(glm::cross(next, previous)), glm::dot(next, previous));
-}
+constexpr float kWithinPatch = 1.0F / 3.0F; ///< see varianceWithin
 
 /// Positions and faces; what the half-edges take is free again before light comes to the vertices.
 BakedMesh makeVertices(const PatchMesh& mesh, float creaseAngle, std::size_t* separatedFaces) {
@@ -52,37 +48,15 @@ BakedMesh makeVertices(const PatchMesh& mesh, float creaseAngle, std::size_t* se
     return baked;
 }
 
-/// Of each vertex its corners (4 × patch + k), in order.
-class VertexCorners {
-public:
-    VertexCorners(const PatchMesh& mesh, const BakedMesh& baked) : ends_(baked.positions.size() + 1, 0) {
-        const auto forEachCorner = [&](const auto& action) {
-            for (std::uint32_t patch = 0; patch < mesh.size(); ++patch)
-                for (int k = 0; k < mesh.cornerCount(patch); ++k)
-                    action(4 * patch + static_cast<std::uint32_t>(k), baked.faces[patch][static_cast<std::size_t>(k)]);
-        };
-        forEachCorner([&](std::uint32_t, std::uint32_t vertex) { ++ends_[vertex + 1]; });
-        std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
-        corners_.resize(ends_.back());
-        // Filling moves each vertex's begin to its end, which is where the next one begins.
-        forEachCorner([&](std::uint32_t corner, std::uint32_t vertex) { corners_[ends_[vertex]++] = corner; });
-    }
-
-    std::span<const std::uint32_t> of(std::size_t vertex) const {
-        const std::size_t begin = vertex == 0 ? 0 : ends_[vertex - 1];
-        return std::span(corners_).subspan(begin, ends_[vertex] - begin);
-    }
-
-private:
-    std::vector<std::uint32_t> ends_; ///< #vertices + 1, into corners_
-    std::vector<std::uint32_t> corners_;
+/// What the patches about a vertex have, weighted by area, angle and openness.
+struct VertexMeans {
+    RgbSum irradiance{0.0}, reflectance{0.0}, emitted{0.0};
 };
 
-} // namespace
-
-BakedMesh reconstructAverage(const PatchMesh& mesh, const PatchOptics& optics, const Scene& scene,
-                             const RadiositySolution& solution, const ReconstructionOptions& options,
-                             std::size_t* separatedFaces) {
+/// The mesh without its light; of each vertex the means, and its normal.
+BakedMesh withoutLight(const LitPatches& lit, const ReconstructionOptions& options, std::size_t* separatedFaces,
+                       std::vector<VertexMeans>& means) {
+    const auto& [mesh, optics, scene, solution, unused] = lit;
     BakedMesh baked = makeVertices(mesh, options.creaseAngle, separatedFaces);
     baked.origin = scene.origin;
     baked.materials = scene.materials;
@@ -98,11 +72,10 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const PatchOptics& optics, c
 
     const VertexCorners around(mesh, baked);
     const std::size_t count = baked.positions.size();
-    baked.irradiance.reserve(count);
-    baked.radiosity.reserve(count);
+    means.resize(count);
     baked.normals.reserve(count);
     for (std::size_t vertex = 0; vertex < count; ++vertex) {
-        RgbSum irradiance(0.0), reflectance(0.0), emitted(0.0);
+        VertexMeans& mean = means[vertex];
         glm::dvec3 normal(0.0);
         double weights = 0.0;
         for (const std::uint32_t corner : around.of(vertex)) {
@@ -111,19 +84,140 @@ BakedMesh reconstructAverage(const PatchMesh& mesh, const PatchOptics& optics, c
             const double whole =
                 static_cast<double>(mesh.area[patch]) * angleAt(mesh, patch, static_cast<int>(corner % 4));
             const double weight = whole * openness;
-            irradiance += weight * solution.irradiance[patch];
-            reflectance += weight * RgbSum(optics.reflectance[patch]);
-            emitted += weight * RgbSum(optics.emittedRadiosity[patch]);
+            mean.irradiance += weight * solution.irradiance[patch];
+            mean.reflectance += weight * RgbSum(optics.reflectance[patch]);
+            mean.emitted += weight * RgbSum(optics.emittedRadiosity[patch]);
             normal += whole * glm::dvec3(mesh.normal[patch]);
             weights += weight;
         }
         const double share = weights > 0.0 ? 1.0 / weights : 0.0;
-        const RgbSum e = glm::max(share * irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
-        baked.irradiance.emplace_back(e);
-        baked.radiosity.emplace_back(share * emitted + share * reflectance * e);
+        mean.irradiance = glm::max(share * mean.irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
+        mean.reflectance *= share;
+        mean.emitted *= share;
         const double length = glm::length(normal);
         baked.normals.push_back(length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F, 0.0F, 1.0F));
     }
+    return baked;
+}
+
+void addLight(const std::vector<VertexMeans>& means, BakedMesh& baked) {
+    baked.irradiance.clear();
+    baked.radiosity.clear();
+    baked.irradiance.reserve(means.size());
+    baked.radiosity.reserve(means.size());
+    for (const VertexMeans& mean : means) {
+        baked.irradiance.emplace_back(mean.irradiance);
+        baked.radiosity.emplace_back(mean.emitted + mean.reflectance * mean.irradiance);
+    }
+}
+
+/// Gathers for one vertex after the other; one per thread.
+class VertexGather {
+public:
+    VertexGather(const FinalGather& gather, const VertexPlaces& places, std::size_t vertices)
+        : gather_(gather), places_(places), vertices_(vertices) {}
+
+    /// From where more is seen than backs, if there is such a place.
+    std::optional<GatheredLight> at(std::size_t vertex) {
+        places_.of(vertex, found_);
+        if (found_.empty()) return std::nullopt;
+        GatheredLight light;
+        for (std::size_t k = 0; k < found_.size(); ++k) {
+            const GatheredLight part = gather_.at(found_[k].point, static_cast<std::uint32_t>(vertex + k * vertices_));
+            light.irradiance += found_[k].weight * part.irradiance;
+            light.standardError += found_[k].weight * part.standardError * found_[k].weight * part.standardError;
+            light.patchError += found_[k].weight * part.patchError;
+            light.covered += found_[k].weight * part.covered;
+            light.rays += part.rays;
+        }
+        light.standardError = glm::sqrt(light.standardError);
+        for (const float share : {0.25F, 0.5F, 0.75F}) {
+            if (light.covered <= kCovered) break;
+            light = gather_.at(places_.inside(vertex, share).point, static_cast<std::uint32_t>(vertex));
+        }
+        return light;
+    }
+
+private:
+    const FinalGather& gather_;
+    const VertexPlaces& places_;
+    std::size_t vertices_;
+    std::vector<VertexPlace> found_;
+};
+
+struct VertexError {
+    RgbSum light{0.0}, error{0.0};
+    double relative = 0.0;
+    std::uint32_t rays = 0; ///< 0: nothing was gathered
+};
+
+GatherReport reportOf(const std::vector<VertexError>& vertices) {
+    GatherReport report;
+    RgbSum light(0.0), squares(0.0);
+    for (const VertexError& vertex : vertices) {
+        if (vertex.rays == 0) continue;
+        ++report.vertices;
+        report.rays += vertex.rays;
+        light += vertex.light;
+        squares += vertex.error * vertex.error;
+        report.largestError = std::max(report.largestError, vertex.relative);
+    }
+    const double n = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
+    if (sumOf(light) > 0.0) report.error = std::sqrt(sumOf(squares) / (3.0 * n)) / (sumOf(light) / (3.0 * n));
+    return report;
+}
+
+} // namespace
+
+BakedMesh reconstructAverage(const LitPatches& lit, const ReconstructionOptions& options, std::size_t* separatedFaces) {
+    std::vector<VertexMeans> means;
+    BakedMesh baked = withoutLight(lit, options, separatedFaces, means);
+    addLight(means, baked);
+    return baked;
+}
+
+std::vector<Rgb> varianceWithin(const LitPatches& lit, const BakedMesh& average) {
+    std::vector<Rgb> variance;
+    variance.reserve(lit.mesh.size());
+    for (std::size_t patch = 0; patch < lit.mesh.size(); ++patch) {
+        const int count = lit.mesh.cornerCount(patch);
+        Rgb squares(0.0F);
+        for (int k = 0; k < count; ++k) {
+            const Rgb& corner = average.irradiance[average.faces[patch][static_cast<std::size_t>(k)]];
+            const Rgb difference = corner - Rgb(lit.solution.irradiance[patch]);
+            squares += difference * difference;
+        }
+        squares *= kWithinPatch / static_cast<float>(count);
+        if (!lit.standardError.empty()) squares += lit.standardError[patch] * lit.standardError[patch];
+        variance.push_back(lit.optics.reflectance[patch] * lit.optics.reflectance[patch] * squares);
+    }
+    return variance;
+}
+
+BakedMesh reconstructGather(const LitPatches& lit, const RayCaster& rays, const LightSources& sources,
+                            const ReconstructionOptions& options, const FinalGatherOptions& gatherOptions,
+                            Progress& progress, GatherReport* report, std::size_t* separatedFaces) {
+    std::vector<VertexMeans> means;
+    BakedMesh baked = withoutLight(lit, options, separatedFaces, means);
+    addLight(means, baked);
+    const FinalGather gather(rays, lit, sources, varianceWithin(lit, baked), gatherOptions);
+    const VertexPlaces places(rays, lit.mesh, baked, lit.solution.covered);
+    std::vector<VertexError> errors(report != nullptr ? means.size() : 0);
+    progress.begin("gather", means.size());
+    parallelFor(means.size(), 64, [&](std::size_t begin, std::size_t end, int) {
+        VertexGather vertices(gather, places, means.size());
+        for (std::size_t vertex = begin; vertex < end; ++vertex) {
+            const auto light = vertices.at(vertex);
+            if (!light) continue;
+            means[vertex].irradiance = light->irradiance;
+            if (report != nullptr)
+                errors[vertex] = {light->irradiance, glm::sqrt(light->standardError * light->standardError + light->patchError * light->patchError), gather.relativeError(*light), light->rays};
+        }
+        progress.advance(end - begin);
+    });
+    progress.end();
+    if (report != nullptr) *report = reportOf(errors);
+    addLight(means, baked);
     return baked;
 }
 

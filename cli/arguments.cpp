@@ -47,6 +47,10 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
     addNumber(command, "--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]", "DEGREES",
               0.0, 180.0)
         ->group("Solution");
+    addNumber(command, "--gather-error", a.gatherError,
+              "Aimed at where light is gathered: standard error at a point, relative to its light, 1e-4 to 1 [0.01]", "E",
+              1e-4, 1.0)
+        ->group("Solution");
     addLightArguments(command, a.light);
     addSolverArguments(command, a);
     addInstantRadiosityArguments(command, a);
@@ -140,6 +144,10 @@ SolveOptions solveOptions(const TransportArguments& a, const RunArguments& run) 
 ReconstructionOptions reconstructionOptions(const TransportArguments& a) {
     return {.creaseAngle = static_cast<float>(a.creaseAngle * std::numbers::pi / 180.0),
             .keepHidden = a.patches == std::size_t{0}}; // the caller's mesh
+}
+
+FinalGatherOptions gatherOptions(const TransportArguments& a, const RunArguments& run) {
+    return {.error = a.gatherError.value_or(FinalGatherOptions{}.error), .seed = run.seed};
 }
 
 namespace {

@@ -28,6 +28,7 @@ struct TransportArguments {
     std::optional<std::size_t> patches;
     bool wholeContacts = false;
     double creaseAngle = 30.0; //!< degrees
+    std::optional<double> gatherError;
     // Form factors; see cli/transport_arguments.cpp
     std::optional<std::string> method;
     std::optional<int> resolution, hemicubes;
@@ -105,6 +106,7 @@ void refuseInstantRadiosity(const TransportArguments& arguments);
 CheckpointOptions checkpointOptions(const TransportArguments& arguments);
 SolveOptions solveOptions(const TransportArguments& arguments, const RunArguments& run);
 ReconstructionOptions reconstructionOptions(const TransportArguments& arguments);
+FinalGatherOptions gatherOptions(const TransportArguments& arguments, const RunArguments& run);
 
 /// Appends the files, other than the scene's, that are read.
 void addTransportInputs(const TransportArguments& arguments, std::vector<std::filesystem::path>& inputs);

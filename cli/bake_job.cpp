@@ -157,7 +157,11 @@ BakePlan planOf(const BakeArguments& a) {
     plan.exposure = typedExposure(a.exposure);
     checkPicture(a.picture);
     if (!a.solution.empty()) requireSolutionName(a.solution, "--solution");
-    plan.options = {solveOptions(a.transport, a.run), reconstructionOptions(a.transport), a.perLight};
+    plan.options = {solveOptions(a.transport, a.run), reconstructionOptions(a.transport), std::nullopt, a.perLight};
+    if (a.reconstruction == "gather")
+        plan.options.gather = gatherOptions(a.transport, a.run);
+    else if (a.transport.gatherError)
+        throw UsageError("--gather-error: means nothing without --reconstruction gather");
     plan.output = {quantityOf(a), plan.exposure.value_or(0.0F), LAMBERT_VERSION};
     if (a.perLight && usesVirtualLights(a.transport))
         throw UsageError(fmt::format("--per-light: is not possible with --method {}", kInstantRadiosity));
@@ -185,6 +189,9 @@ BakeOutcome bakeJob(const BakeArguments& a, const BakePlan& plan, const BakeJob&
                          near > 0 ? fmt::format(" ({} for near contacts)", near) : "",
                          transportText(options.method, baked), solverText(baked)),
              fmt::format(", {:.1f} s", total.seconds()));
+    if (baked.gather)
+        log.line(fmt::format("gathered at {} vertices: {:.3g} rays, standard error {:.2g} %", baked.gather->vertices,
+                             static_cast<double>(baked.gather->rays), 100.0 * baked.gather->error));
     if (baked.formFactors() != nullptr && baked.formFactors()->repair)
         log.line(repairText(*baked.formFactors()->repair));
 

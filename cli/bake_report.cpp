@@ -35,6 +35,9 @@ Json optionsJson(const BakeReportInput& in) {
     options["patch_length"] = std::isfinite(length) ? Json(length) : Json(nullptr);
     options["whole_contacts"] = in.transport.wholeContacts;
     options["crease_angle"] = in.transport.creaseAngle;
+    const bool gathers = in.baked == nullptr || in.baked->gather;
+    options["reconstruction"] = gathers ? "gather" : "average";
+    options["gather_error"] = gathers ? Json(gatherOptions(in.transport, in.run).error) : Json(nullptr);
     const FormFactorsUsed* const used = solved.formFactors();
     options.update(methodOptionsJson(in.options.method, used != nullptr ? used->plan : std::nullopt));
     options.update(lightOptionsJson(in.transport.light, in.options.directLight));
@@ -95,6 +98,13 @@ Json instantRadiosityJson(const InstantRadiosity& light) {
     return {
         {"vpls", light.lights},           {"particles", light.particles}, {"points_per_patch", light.points},
         {"lost", jsonVector(light.lost)}, {"cut", jsonVector(light.cut)}, {"recovered", jsonVector(light.recovered)}};
+}
+
+Json gatherJson(const GatherReport& gather) {
+    return {{"vertices", gather.vertices},
+            {"rays", gather.rays},
+            {"relative_error", gather.error},
+            {"largest_relative_error", gather.largestError}};
 }
 
 Json bouncesJson(const PatchMesh& mesh, const RadiositySolution& solution) {
@@ -214,6 +224,7 @@ Json bakeReport(const BakeReportInput& in) {
     if (solved.stochastic() != nullptr) report["stochastic"] = stochasticJson(*solved.stochastic());
     if (solved.instantRadiosity() != nullptr)
         report["instant_radiosity"] = instantRadiosityJson(*solved.instantRadiosity());
+    if (in.baked != nullptr && in.baked->gather) report["gather"] = gatherJson(*in.baked->gather);
     if (!solved.solution.bounces.empty()) report["bounces"] = bouncesJson(solved.mesh, solved.solution);
     report["rays"] = solved.rayCount;
     report["peak_memory_bytes"] = peakMemoryBytes();

@@ -96,8 +96,8 @@ private:
 
     HtmlFigure picture(const std::string& name, const std::string& title, const StoredSolution& solution,
                        const RayCaster& rays, std::optional<float>& exposure) {
-        const BakedMesh baked = reconstructAverage(solution.meshed.mesh, solution.meshed.optics, *solution.meshed.scene,
-                                                   solution.solution, {});
+        const BakedMesh baked = reconstructAverage(
+            {solution.meshed.mesh, solution.meshed.optics, *solution.meshed.scene, solution.solution}, {});
         if (!exposure) exposure = automaticExposure(baked, in_.quantity);
         RenderOptions options{in_.size};
         options.quantity = in_.quantity;

@@ -67,7 +67,7 @@ private:
             return headlightPicture(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.rays, in_.camera, in_.size,
                                     progress_);
         const BakedMesh baked =
-            reconstructAverage(in_.meshed.mesh, in_.meshed.optics, *in_.meshed.scene, of_.referenceSolution, {});
+            reconstructAverage({in_.meshed.mesh, in_.meshed.optics, *in_.meshed.scene, of_.referenceSolution}, {});
         RenderOptions options{in_.size};
         options.toneMapExposure = automaticExposure(baked, Quantity::Radiosity);
         return renderBaked(in_.meshed.mesh, baked, *in_.meshed.rays, in_.camera, options, progress_);

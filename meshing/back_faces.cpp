@@ -9,7 +9,7 @@ namespace lambert {
 
 namespace {
 
-constexpr std::uint32_t kPoints = 4096;
+constexpr std::uint32_t kPoints = 2048;
 constexpr double kInside = 0.8; // of a point's rays on backs: as where form factors are judged after a bake
 
 /// The materials whose black backs the packet's rays meet.

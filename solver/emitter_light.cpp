@@ -25,8 +25,8 @@ constexpr int kPointBatches = 8;
 constexpr double kPatchError = 3e-3; ///< relative, of a patch's mean: no more batches
 constexpr double kEven = 0.1;        ///< relative: points of a patch that vary less, and all see the same, are enough
 
-std::uint64_t keyOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed) {
-    return randomKey({index, 0, 0, kind}, seed);
+std::uint64_t keyOf(std::uint32_t index, std::uint32_t kind, std::uint64_t seed, std::uint32_t round = 0) {
+    return randomKey({index, round, 0, kind}, seed);
 }
 
 /// The mean of batches, and what it may be off by.
@@ -123,10 +123,10 @@ std::vector<RgbSum> EmitterLight::irradiance(const PatchMesh& mesh, Progress& pr
 }
 
 EstimatedLight EmitterLight::irradiance(const glm::vec3& point, const glm::vec3& normal, float lift,
-                                        std::uint32_t index, std::uint32_t rays) const {
+                                        std::uint32_t index, std::uint32_t rays, std::uint32_t round) const {
     if (empty()) return {};
     EmitterReceiver receiver(tree_, rays_, {glm::dvec3(point), glm::dvec3(normal), 0.0}, lift,
-                             keyOf(index, 0x454D4954, seed_));
+                             keyOf(index, 0x454D4954, seed_, round));
     if (receiver.isDark()) return {};
     BatchStatistics batches;
     std::vector<RgbSum> sums(materials().size());

@@ -43,9 +43,9 @@ public:
                                    std::vector<std::vector<RgbSum>>* byMaterial = nullptr) const;
 
     /// At a point (metres) of a surface with this unit normal, by about so many rays (64 at least), which begin `lift` metres above
-    /// it. Points of different `index` have rays of their own. Thread-safe.
+    /// it. Points of different `index` have rays of their own, as have rounds of one point. Thread-safe.
     EstimatedLight irradiance(const glm::vec3& point, const glm::vec3& normal, float lift, std::uint32_t index,
-                              std::uint32_t rays) const;
+                              std::uint32_t rays, std::uint32_t round = 0) const;
 
 private:
     const RayCaster& rays_;

@@ -2,15 +2,26 @@
 
 #include "scene/rays/packet_width.h"
 
-#include <array>
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace lambert {
 
-/// What Embree has kernels for, as it calls them. What a processor lacks, Embree takes the best one below for.
-inline constexpr std::array kInstructionSets{"sse2", "avx", "avx2", "avx512"};
+/// What Embree has kernels for, as it calls them, and this processor too; the first is the least. (Of what a processor lacks Embree 3
+/// makes the best that it has; Embree 4 does not start.)
+inline std::vector<const char*> instructionSets() {
+    std::vector<const char*> sets{"sse2"};
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx")) sets.push_back("avx");
+    if (__builtin_cpu_supports("avx2")) sets.push_back("avx2");
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+        sets.push_back("avx512");
+#endif
+    return sets;
+}
 
 /// While it lives, what casters are made traces with the kernels of an instruction set.
 class InstructionSet {

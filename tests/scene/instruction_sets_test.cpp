@@ -69,7 +69,7 @@ void leaveOnly(std::uint32_t count, int (&active)[16]) {
 
 TEST(InstructionSets, InactiveRaysMeetNothing) {
     const Scene scene = tableRoom();
-    for (const char* name : kInstructionSets) {
+    for (const char* name : instructionSets()) {
         const InstructionSet set(name);
         const RayCaster rays(scene);
         const LineCaster lines(scene);
@@ -191,10 +191,10 @@ TEST(InstructionSets, RaysMeetTheSame) {
     for (const auto& [file, coincident] :
          {std::pair<std::string, std::size_t>{"/cornell_box.obj", 0}, {"/table_room.gltf", 1000}}) {
         const Scene scene = readScene(LAMBERT_DATA + file).scene;
-        const auto hits = with(kInstructionSets[0], [&] { return firstHits(scene, Coherence::High); });
-        const auto occluded = with(kInstructionSets[0], [&] { return shadows(scene); });
-        const auto counts = with(kInstructionSets[0], [&] { return crossingCounts(scene); });
-        for (const char* name : kInstructionSets) {
+        const auto hits = with(instructionSets().front(), [&] { return firstHits(scene, Coherence::High); });
+        const auto occluded = with(instructionSets().front(), [&] { return shadows(scene); });
+        const auto counts = with(instructionSets().front(), [&] { return crossingCounts(scene); });
+        for (const char* name : instructionSets()) {
             const InstructionSet set(name);
             for (const Coherence coherence : {Coherence::High, Coherence::Low}) {
                 const FirstHits found = firstHits(scene, coherence);
@@ -240,7 +240,7 @@ TEST(InstructionSets, LinesCrossEveryPolygonOnce) {
         add(0, 1, polygon.isQuad() ? 3 : 2);
         if (polygon.isQuad()) add(2, 3, 1);
     }
-    for (const char* name : kInstructionSets) {
+    for (const char* name : instructionSets()) {
         const InstructionSet set(name);
         const LineCaster caster(scene);
         LineCrossings crossings;

@@ -68,8 +68,8 @@ double largestDifference(const Means& a, const Means& b) {
 TEST(InstructionSets, AgreeOnFormFactorsAndLight) {
     constexpr double kPixel = 4.0 / (64.0 * 64.0 * std::numbers::pi); // the largest form factor of a pixel
     const auto trace = [] { return TracedBox(); };
-    const TracedBox expected = with(kInstructionSets[0], trace);
-    for (const char* name : kInstructionSets) {
+    const TracedBox expected = with(instructionSets().front(), trace);
+    for (const char* name : instructionSets()) {
         const TracedBox found = with(name, trace);
         ASSERT_EQ(found.c.mesh.size(), expected.c.mesh.size());
         std::size_t crossings = 0, others = 0;
