@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kTile = 4; ///< cells along an edge; a packet has a ray in each
 static_assert(kTile * kTile == RayPacket::kSize);
-constexpr int kFirstCells = 8;          ///< along an edge of the square that is mapped to the directions
+constexpr int kFirstCells = 8; ///< along an edge of the square that is mapped to the directions
 constexpr int kMostCells = 64;
 constexpr std::uint32_t kFirstShadowRays = 64;
 constexpr std::uint32_t kMostShadowRays = 4096;
@@ -45,9 +45,8 @@ double medianLight(const PatchMesh& mesh, std::span<const RgbSum> irradiance) {
         order.push_back(i);
         area += static_cast<double>(mesh.area[i]);
     }
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return sumOf(irradiance[a]) < sumOf(irradiance[b]);
-    });
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return sumOf(irradiance[a]) < sumOf(irradiance[b]); });
     double below = 0.0;
     for (const std::uint32_t i : order) {
         below += static_cast<double>(mesh.area[i]);
@@ -80,13 +79,17 @@ void checkFinalGather(const FinalGatherOptions& options) {
         throw UsageError(fmt::format("gather error: found {}, allowed are 1e-4 to 1", options.error));
 }
 
-void FinalGather::Part::add(const RgbSum& value, const RgbSum& itsVariance, double count) {
+void GatheredLight::Part::add(const RgbSum& value, const RgbSum& itsVariance, double count) {
     const double all = rays + count;
     const double share = count / all;
     mean += share * (value - mean);
     variance = (1.0 - share) * (1.0 - share) * variance + share * share * itsVariance;
     rays = all;
     ++round;
+}
+
+RgbSum GatheredLight::standardError() const {
+    return glm::sqrt(reflected.variance + directVariance() + patchError * patchError);
 }
 
 FinalGather::FinalGather(const RayCaster& rays, const LitPatches& lit, const LightSources& sources,
@@ -108,46 +111,45 @@ FinalGather::FinalGather(const RayCaster& rays, const LitPatches& lit, const Lig
         varied_.push_back(polygon.surface != kNone || polygon.backSurface != kNone);
 }
 
-GatheredLight FinalGather::at(const GatherPoint& point, std::uint32_t index) const {
-    GatheredLight result;
-    Part reflection, emission, sky;
-    reflected(point, index, reflection, result);
-    emission.exact = emitters_.empty();
-    if (!emission.exact) emitted(point, index, emission);
-    sky.exact = sources_.environment == nullptr;
-    if (!sky.exact) fromSky(point, index, sky);
-    RgbSum exact(0.0);
+GatheredLight FinalGather::begin(const GatherPoint& point, std::uint32_t index) const {
+    GatheredLight light;
+    refineReflected(point, index, light);
+    light.emitted.exact = emitters_.empty();
+    if (!light.emitted.exact) emitted(point, index, light.emitted);
+    light.sky.exact = sources_.environment == nullptr;
+    if (!light.sky.exact) fromSky(point, index, light.sky);
     if (!sources_.lights.empty())
-        exact = DirectLight(rays_, {.seed = options_.seed})
-                    .irradiance(point.position, point.normal, index, {sources_.lights, nullptr});
+        light.exact = DirectLight(rays_, {.seed = options_.seed})
+                          .irradiance(point.position, point.normal, index, {sources_.lights, nullptr});
+    return light;
+}
+
+void FinalGather::refineDirect(const GatherPoint& point, std::uint32_t index, double share,
+                               GatheredLight& light) const {
     for (;;) {
-        result.irradiance = exact + reflection.mean + emission.mean + sky.mean;
-        const RgbSum variance = reflection.variance + emission.variance + sky.variance;
-        result.standardError = glm::sqrt(variance);
-        if (relativeError(result) <= options_.error) break;
-        Part* worst = nullptr;
-        for (Part* part : {&reflection, &emission, &sky})
-            if (!part->exact && (worst == nullptr || sumOf(part->variance) > sumOf(worst->variance))) worst = part;
-        if (worst == nullptr) break;
-        if (worst == &reflection)
-            reflected(point, index, reflection, result);
-        else if (worst == &emission)
-            emitted(point, index, emission);
+        const double allowed = allowedError(light.irradiance());
+        if (sumOf(glm::sqrt(light.directVariance())) <= std::sqrt(1.0 - share) * allowed) return;
+        const bool bySky =
+            light.emitted.exact || (!light.sky.exact && sumOf(light.sky.variance) > sumOf(light.emitted.variance));
+        if (bySky && light.sky.exact) return;
+        if (bySky)
+            fromSky(point, index, light.sky);
         else
-            fromSky(point, index, sky);
+            emitted(point, index, light.emitted);
     }
-    result.irradiance = glm::max(result.irradiance, RgbSum(0.0));
-    result.rays = static_cast<std::uint32_t>(reflection.rays + emission.rays + sky.rays);
-    return result;
 }
 
-double FinalGather::relativeError(const GatheredLight& light) const {
-    const double error = sumOf(light.standardError);
-    return error > 0.0 ? error / std::max(sumOf(light.irradiance), least_) : 0.0;
+GatheredLight FinalGather::at(const GatherPoint& point, std::uint32_t index) const {
+    GatheredLight light = begin(point, index);
+    refineDirect(point, index, 0.5, light);
+    while (!light.reflected.exact &&
+           sumOf(glm::sqrt(light.reflected.variance + light.directVariance())) > allowedError(light.irradiance()))
+        refineReflected(point, index, light);
+    return light;
 }
 
-void FinalGather::reflected(const GatherPoint& point, std::uint32_t index, Part& part,
-                            GatheredLight& result) const {
+void FinalGather::refineReflected(const GatherPoint& point, std::uint32_t index, GatheredLight& result) const {
+    Part& part = result.reflected;
     const int cells = kFirstCells << part.round;
     part.exact = cells >= kMostCells;
     const auto turn = philox({index, 0, 0, 0x5455524E}, options_.seed);
@@ -184,10 +186,10 @@ void FinalGather::reflected(const GatherPoint& point, std::uint32_t index, Part&
                     ++onBacks;
                     continue;
                 }
-                light[lane] = varied_[hit] ? Rgb(RgbSum(reflectanceAt(scene, polygon, side, packet.u[lane],
-                                                                      packet.v[lane])) *
-                                                 irradiance_[of])
-                                           : reflected_[of];
+                light[lane] = varied_[hit]
+                                  ? Rgb(RgbSum(reflectanceAt(scene, polygon, side, packet.u[lane], packet.v[lane])) *
+                                        irradiance_[of])
+                                  : reflected_[of];
             }
             for (int block = 0; block < 4; ++block) {
                 const int lane = block / 2 * 2 * kTile + block % 2 * 2;
@@ -237,8 +239,8 @@ void FinalGather::fromSky(const GatherPoint& point, std::uint32_t index, Part& p
         squares += light * light;
     }
     const RgbSum mean = sum / static_cast<double>(kSkyBatches);
-    const RgbSum spread = glm::max(squares / static_cast<double>(kSkyBatches) - mean * mean, RgbSum(0.0)) /
-                          (kSkyBatches - 1.0);
+    const RgbSum spread =
+        glm::max(squares / static_cast<double>(kSkyBatches) - mean * mean, RgbSum(0.0)) / (kSkyBatches - 1.0);
     const double all = static_cast<double>(kSkyBatches) * count;
     const RgbSum error = studentFactor(kSkyBatches) * glm::sqrt(spread) + kUnseen / all * mean;
     part.add(mean, error * error, all);

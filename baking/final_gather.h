@@ -3,6 +3,9 @@
 #include "lighting/solve_scene.h"
 #include "solver/emitter_light.h"
 
+#include <glm/common.hpp>
+
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,12 +38,26 @@ struct GatherPoint {
     float lift;         //!< rays begin so far above it, metres
 };
 
+/// The light at a point, as far as it is known.
 struct GatheredLight {
-    RgbSum irradiance{0.0};    //!< E per m²
-    RgbSum standardError{0.0}; //!< of the rays
-    RgbSum patchError{0.0};    //!< of what they meet: as light varies within patches, and as the solution is noisy
-    double covered = 0.0;      //!< share of the hemisphere that is closed by backs, 0 to 1
-    std::uint32_t rays = 0;
+    struct Part {
+        RgbSum mean{0.0}, variance{0.0};
+        double rays = 0.0;
+        std::uint32_t round = 0;
+        bool exact = false; //!< more rays would find nothing else
+
+        void add(const RgbSum& value, const RgbSum& itsVariance, double count);
+    };
+    Part reflected, emitted, sky; //!< by surfaces, by all that emits, by the environment
+    RgbSum exact{0.0};            //!< of lights without area
+    RgbSum patchError{0.0};       //!< of what rays meet: as light varies within patches, and as the solution is noisy
+    double covered = 0.0;         //!< share of the hemisphere that is closed by backs, 0 to 1
+
+    RgbSum direct() const { return exact + emitted.mean + sky.mean; }
+    RgbSum irradiance() const { return glm::max(reflected.mean + direct(), RgbSum(0.0)); } //!< E per m²
+    RgbSum directVariance() const { return emitted.variance + sky.variance; }
+    RgbSum standardError() const; //!< of rays and patches
+    double rays() const { return reflected.rays + emitted.rays + sky.rays; }
 };
 
 /// The irradiance at points from the light of patches, found at the points themselves instead of between patches:
@@ -57,27 +74,30 @@ class FinalGather {
 public:
     /// All of `lit`, the scene's `rays` and the lights must be kept. Throws UsageError for options out of range.
     /// `variance`: #patches, see varianceWithin; or empty: nothing is said of patches' errors.
-    FinalGather(const RayCaster& rays, const LitPatches& lit, const LightSources& sources,
-                std::vector<Rgb> variance, const FinalGatherOptions& options);
+    FinalGather(const RayCaster& rays, const LitPatches& lit, const LightSources& sources, std::vector<Rgb> variance,
+                const FinalGatherOptions& options);
 
-    /// Thread-safe. Points of different `index` have random numbers of their own.
+    // Thread-safe. Points of different `index` have random numbers of their own.
+
+    /// As good as asked for.
     GatheredLight at(const GatherPoint& point, std::uint32_t index) const;
+    /// By few rays each.
+    GatheredLight begin(const GatherPoint& point, std::uint32_t index) const;
+    /// Direct light as good as asked for, less `share` of the allowed variance.
+    void refineDirect(const GatherPoint& point, std::uint32_t index, double share, GatheredLight& light) const;
+    /// Four times as many rays to surfaces.
+    void refineReflected(const GatherPoint& point, std::uint32_t index, GatheredLight& light) const;
 
-    /// The rays' standard error as FinalGatherOptions::error has it.
-    double relativeError(const GatheredLight& light) const;
+    const FinalGatherOptions& options() const { return options_; }
+    /// A standard error over the channels, as FinalGatherOptions::error has it.
+    double relative(double error, const RgbSum& irradiance) const {
+        return error > 0.0 ? error / std::max(sumOf(irradiance), least_) : 0.0;
+    }
 
 private:
-    /// One of the parts of the light, as far as it is known.
-    struct Part {
-        RgbSum mean{0.0}, variance{0.0};
-        double rays = 0.0;
-        std::uint32_t round = 0;
-        bool exact = false; ///< more rays would find nothing else
-
-        void add(const RgbSum& value, const RgbSum& itsVariance, double count);
-    };
-
-    void reflected(const GatherPoint& point, std::uint32_t index, Part& part, GatheredLight& result) const;
+    using Part = GatheredLight::Part;
+    /// The standard error that is allowed where there is so much light, over the channels.
+    double allowedError(const RgbSum& irradiance) const { return options_.error * std::max(sumOf(irradiance), least_); }
     RgbSum errorOfPatches(std::span<std::uint32_t> met) const;
     void emitted(const GatherPoint& point, std::uint32_t index, Part& part) const;
     void fromSky(const GatherPoint& point, std::uint32_t index, Part& part) const;

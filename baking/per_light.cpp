@@ -7,9 +7,9 @@ namespace lambert {
 BakedLight bakeLight(const SolvedScene& scene, SolvedLight light, const ReconstructionOptions& options,
                      const std::optional<FinalGatherOptions>& gather, Progress& progress) {
     const LitPatches lit{scene.mesh, light.optics, *scene.scene, light.solution};
-    BakedMesh baked = gather ? reconstructGather(lit, *scene.rays, sourcesOf(light.group, *scene.scene), options,
-                                                 *gather, progress)
-                             : reconstructAverage(lit, options);
+    BakedMesh baked =
+        gather ? reconstructGather(lit, *scene.rays, sourcesOf(light.group, *scene.scene), options, *gather, progress)
+               : reconstructAverage(lit, options);
     return {std::move(light.group),     light.solution.energy,       light.solution.iterations, light.solution.residual,
             std::move(baked.radiosity), std::move(baked.irradiance), std::move(baked.emitters)};
 }

@@ -4,7 +4,6 @@
 #include "core/parallel.h"
 #include "meshing/patch_offset.h"
 
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -16,7 +15,7 @@ namespace lambert {
 
 namespace {
 
-constexpr float kOnSurface = 1e-4F;         ///< of the scene's diagonal
+constexpr float kOnSurface = 1e-4F; ///< of the scene's diagonal
 constexpr double kOnlyBacks =
     1e-3;                        ///< of its rays: a point of which no more meet anything but backs is inside something
 constexpr double kLeaked = 0.99; ///< of the light: an error as large leaves nothing
@@ -74,8 +73,8 @@ std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalG
     const StochasticSolution* const lines = scene.stochastic();
     const LitPatches lit{scene.mesh, scene.optics, *scene.scene, scene.solution,
                          lines != nullptr ? std::span<const Rgb>(lines->standardError) : std::span<const Rgb>()};
-    const FinalGather gather(*scene.rays, lit, lightsOf(*scene.scene),
-                             varianceWithin(lit, reconstructAverage(lit, {})), options);
+    const FinalGather gather(*scene.rays, lit, lightsOf(*scene.scene), varianceWithin(lit, reconstructAverage(lit, {})),
+                             options);
     std::vector<ProbeReading> readings(points.size());
     progress.begin("probe", points.size());
     parallelFor(points.size(), 4, [&](std::size_t begin, std::size_t end, int) {
@@ -85,11 +84,12 @@ std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalG
             const GatherPoint place =
                 surface ? placeOf(scene, *surface) : GatherPoint{points[i].position, normal, lift};
             const GatheredLight light = gather.at(place, static_cast<std::uint32_t>(i));
-            const double sum = sumOf(light.irradiance);
-            const bool leaked = sum > 0.0 && sumOf(light.standardError) >= kLeaked * sum;
+            const RgbSum irradiance = light.irradiance();
+            const RgbSum error = light.standardError();
+            const bool leaked = sumOf(irradiance) > 0.0 && sumOf(error) >= kLeaked * sumOf(irradiance);
             readings[i] = light.covered > 1.0 - kOnlyBacks || (leaked && !surface)
                               ? unknown(surface.has_value())
-                              : ProbeReading{light.irradiance, glm::sqrt(light.standardError * light.standardError + light.patchError * light.patchError), surface.has_value()};
+                              : ProbeReading{irradiance, error, surface.has_value()};
         }
         progress.advance(end - begin);
     });

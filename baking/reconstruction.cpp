@@ -1,8 +1,6 @@
 #include "baking/reconstruction.h"
 
-#include "baking/vertex_places.h"
-#include "core/parallel.h"
-#include "formfactors/matrix_quality.h"
+#include "baking/vertex_gather.h"
 #include "meshing/half_edge_mesh.h"
 
 #include <glm/common.hpp>
@@ -91,7 +89,8 @@ BakedMesh withoutLight(const LitPatches& lit, const ReconstructionOptions& optio
             weights += weight;
         }
         const double share = weights > 0.0 ? 1.0 / weights : 0.0;
-        mean.irradiance = glm::max(share * mean.irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
+        mean.irradiance =
+            glm::max(share * mean.irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
         mean.reflectance *= share;
         mean.emitted *= share;
         const double length = glm::length(normal);
@@ -111,55 +110,15 @@ void addLight(const std::vector<VertexMeans>& means, BakedMesh& baked) {
     }
 }
 
-/// Gathers for one vertex after the other; one per thread.
-class VertexGather {
-public:
-    VertexGather(const FinalGather& gather, const VertexPlaces& places, std::size_t vertices)
-        : gather_(gather), places_(places), vertices_(vertices) {}
-
-    /// From where more is seen than backs, if there is such a place.
-    std::optional<GatheredLight> at(std::size_t vertex) {
-        places_.of(vertex, found_);
-        if (found_.empty()) return std::nullopt;
-        GatheredLight light;
-        for (std::size_t k = 0; k < found_.size(); ++k) {
-            const GatheredLight part = gather_.at(found_[k].point, static_cast<std::uint32_t>(vertex + k * vertices_));
-            light.irradiance += found_[k].weight * part.irradiance;
-            light.standardError += found_[k].weight * part.standardError * found_[k].weight * part.standardError;
-            light.patchError += found_[k].weight * part.patchError;
-            light.covered += found_[k].weight * part.covered;
-            light.rays += part.rays;
-        }
-        light.standardError = glm::sqrt(light.standardError);
-        for (const float share : {0.25F, 0.5F, 0.75F}) {
-            if (light.covered <= kCovered) break;
-            light = gather_.at(places_.inside(vertex, share).point, static_cast<std::uint32_t>(vertex));
-        }
-        return light;
-    }
-
-private:
-    const FinalGather& gather_;
-    const VertexPlaces& places_;
-    std::size_t vertices_;
-    std::vector<VertexPlace> found_;
-};
-
-struct VertexError {
-    RgbSum light{0.0}, error{0.0};
-    double relative = 0.0;
-    std::uint32_t rays = 0; ///< 0: nothing was gathered
-};
-
-GatherReport reportOf(const std::vector<VertexError>& vertices) {
+GatherReport reportOf(const std::vector<VertexLight>& vertices) {
     GatherReport report;
     RgbSum light(0.0), squares(0.0);
-    for (const VertexError& vertex : vertices) {
+    for (const VertexLight& vertex : vertices) {
         if (vertex.rays == 0) continue;
         ++report.vertices;
         report.rays += vertex.rays;
-        light += vertex.light;
-        squares += vertex.error * vertex.error;
+        light += vertex.irradiance;
+        squares += vertex.standardError * vertex.standardError;
         report.largestError = std::max(report.largestError, vertex.relative);
     }
     const double n = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
@@ -202,21 +161,10 @@ BakedMesh reconstructGather(const LitPatches& lit, const RayCaster& rays, const 
     addLight(means, baked);
     const FinalGather gather(rays, lit, sources, varianceWithin(lit, baked), gatherOptions);
     const VertexPlaces places(rays, lit.mesh, baked, lit.solution.covered);
-    std::vector<VertexError> errors(report != nullptr ? means.size() : 0);
-    progress.begin("gather", means.size());
-    parallelFor(means.size(), 64, [&](std::size_t begin, std::size_t end, int) {
-        VertexGather vertices(gather, places, means.size());
-        for (std::size_t vertex = begin; vertex < end; ++vertex) {
-            const auto light = vertices.at(vertex);
-            if (!light) continue;
-            means[vertex].irradiance = light->irradiance;
-            if (report != nullptr)
-                errors[vertex] = {light->irradiance, glm::sqrt(light->standardError * light->standardError + light->patchError * light->patchError), gather.relativeError(*light), light->rays};
-        }
-        progress.advance(end - begin);
-    });
-    progress.end();
-    if (report != nullptr) *report = reportOf(errors);
+    const std::vector<VertexLight> found = gatherAtVertices(gather, places, baked, progress);
+    for (std::size_t vertex = 0; vertex < found.size(); ++vertex)
+        if (found[vertex].rays > 0) means[vertex].irradiance = found[vertex].irradiance;
+    if (report != nullptr) *report = reportOf(found);
     addLight(means, baked);
     return baked;
 }

@@ -13,7 +13,7 @@ namespace lambert {
 
 struct ReconstructionOptions {
     float creaseAngle = 0.52359878F; //!< radians; across a sharper edge nothing is averaged; 0 to π, default 30°
-    bool keepHidden = false;   //!< hidden patches (see PatchMesh) are faces like others, not holes
+    bool keepHidden = false;         //!< hidden patches (see PatchMesh) are faces like others, not holes
 };
 
 /// Light at the vertices as the mean of the patches around a vertex on its smoothing side, weighted by area and by the

@@ -82,7 +82,8 @@ void VertexPlaces::of(std::size_t vertex, std::vector<VertexPlace>& places) cons
         places.push_back(placeOn(vertex, corner / 4, kFromBorder));
         places.back().weight = weight;
     }
-    for (VertexPlace& place : places) place.weight = all > 0.0 ? place.weight / all : 1.0 / static_cast<double>(places.size());
+    for (VertexPlace& place : places)
+        place.weight = all > 0.0 ? place.weight / all : 1.0 / static_cast<double>(places.size());
 }
 
 VertexPlace VertexPlaces::inside(std::size_t vertex, float share) const {

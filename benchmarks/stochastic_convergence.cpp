@@ -57,7 +57,7 @@ double errorAtPoints(SolvedScene& scene, const std::vector<Reference>& reference
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
     Progress progress;
-    const std::vector<ProbeReading> readings = probeIrradiance(scene, {}, {}, points, progress);
+    const std::vector<ProbeReading> readings = probeIrradiance(scene, {}, points, progress);
     double squares = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         const double difference = readings[i].irradiance.y - reference[i].irradiance.y;
@@ -108,7 +108,7 @@ void takeFromFinerMesh(const Arguments& a, std::vector<Reference>& reference) {
                                   {.rays = static_cast<std::uint64_t>(a.converged), .seed = 2000}, progress);
     std::vector<ProbePoint> points;
     for (const Reference& r : reference) points.push_back(r.point);
-    const std::vector<ProbeReading> readings = probeIrradiance(fine, {}, {}, points, progress);
+    const std::vector<ProbeReading> readings = probeIrradiance(fine, {}, points, progress);
     std::vector<Reference> kept;
     for (std::size_t i = 0; i < reference.size(); ++i) {
         reference[i].irradiance = readings[i].irradiance;

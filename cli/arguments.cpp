@@ -48,8 +48,9 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
               0.0, 180.0)
         ->group("Solution");
     addNumber(command, "--gather-error", a.gatherError,
-              "Aimed at where light is gathered: standard error at a point, relative to its light, 1e-4 to 1 [0.01]", "E",
-              1e-4, 1.0)
+              "Aimed at where light is gathered: standard error at a point, relative to its light, 1e-4 to 1 [0.01; "
+              "probe: 0.003]",
+              "E", 1e-4, 1.0)
         ->group("Solution");
     addLightArguments(command, a.light);
     addSolverArguments(command, a);
@@ -146,8 +147,8 @@ ReconstructionOptions reconstructionOptions(const TransportArguments& a) {
             .keepHidden = a.patches == std::size_t{0}}; // the caller's mesh
 }
 
-FinalGatherOptions gatherOptions(const TransportArguments& a, const RunArguments& run) {
-    return {.error = a.gatherError.value_or(FinalGatherOptions{}.error), .seed = run.seed};
+FinalGatherOptions gatherOptions(const TransportArguments& a, const RunArguments& run, double error) {
+    return {.error = a.gatherError.value_or(error), .seed = run.seed};
 }
 
 namespace {

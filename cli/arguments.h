@@ -106,7 +106,10 @@ void refuseInstantRadiosity(const TransportArguments& arguments);
 CheckpointOptions checkpointOptions(const TransportArguments& arguments);
 SolveOptions solveOptions(const TransportArguments& arguments, const RunArguments& run);
 ReconstructionOptions reconstructionOptions(const TransportArguments& arguments);
-FinalGatherOptions gatherOptions(const TransportArguments& arguments, const RunArguments& run);
+/// `error`: aimed at unless told otherwise.
+FinalGatherOptions gatherOptions(const TransportArguments& arguments, const RunArguments& run,
+                                 double error = FinalGatherOptions{}.error);
+inline constexpr double kProbeError = 0.003; //!< sensors are few
 
 /// Appends the files, other than the scene's, that are read.
 void addTransportInputs(const TransportArguments& arguments, std::vector<std::filesystem::path>& inputs);

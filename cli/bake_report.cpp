@@ -37,7 +37,11 @@ Json optionsJson(const BakeReportInput& in) {
     options["crease_angle"] = in.transport.creaseAngle;
     const bool gathers = in.baked == nullptr || in.baked->gather;
     options["reconstruction"] = gathers ? "gather" : "average";
-    options["gather_error"] = gathers ? Json(gatherOptions(in.transport, in.run).error) : Json(nullptr);
+    options["gather_error"] =
+        gathers
+            ? Json(gatherOptions(in.transport, in.run, in.baked != nullptr ? FinalGatherOptions{}.error : kProbeError)
+                       .error)
+            : Json(nullptr);
     const FormFactorsUsed* const used = solved.formFactors();
     options.update(methodOptionsJson(in.options.method, used != nullptr ? used->plan : std::nullopt));
     options.update(lightOptionsJson(in.transport.light, in.options.directLight));

@@ -68,8 +68,8 @@ ExitCode probe(const ProbeArguments& a) {
     logReport(a.run, read.report);
     const SolvedScene solved = solveScene(read.scene, options, progress);
     for (const std::string& warning : solved.warnings) warnLine(warning);
-    const std::vector<ProbeReading> readings = probeIrradiance(
-        solved, gatherOptions(a.transport, a.run), pointsInScene(points, *solved.scene), progress);
+    const std::vector<ProbeReading> readings = probeIrradiance(solved, gatherOptions(a.transport, a.run, kProbeError),
+                                                               pointsInScene(points, *solved.scene), progress);
     const auto inSpace = std::count_if(readings.begin(), readings.end(), [](const auto& r) { return !r.onSurface; });
     if (inSpace > 0)
         logLine(a.run, fmt::format("{} of {} points lie on no surface: light gathered there", inSpace, points.size()));

@@ -28,7 +28,7 @@ BakedScene bake(const Scene& scene, std::size_t patches, int resolution) {
 
 std::vector<ProbeReading> probed(const BakedScene& baked, std::span<const ProbePoint> points) {
     Progress progress;
-    return probeIrradiance(baked, {}, {}, points, progress);
+    return probeIrradiance(baked, {}, points, progress);
 }
 
 TEST(BakeScene, FurnaceHasTheSameLightAtEveryVertex) {
