@@ -102,6 +102,7 @@ FinalGather::FinalGather(const RayCaster& rays, const LitPatches& lit, const Lig
       emitters_(rays, lit.mesh, lit.optics, options.seed),
       variance_(std::move(variance)),
       least_(kDark * medianLight(lit.mesh, lit.solution.irradiance)) {
+    checkFinalGather(options);
     reflected_.reserve(mesh_.size());
     for (std::size_t i = 0; i < mesh_.size(); ++i)
         reflected_.emplace_back(RgbSum(lit.optics.reflectance[i]) * glm::max(irradiance_[i], RgbSum(0.0)));

@@ -18,7 +18,8 @@ namespace lambert {
 namespace {
 
 constexpr int kMostRings = 4;
-constexpr double kConfidence = 2.0; ///< standard errors
+constexpr double kConfidence = 0.7; ///< standard errors; more let fits grow until they are as wrong as they are noisy
+constexpr double kChosen = 1.4;     ///< of several estimates the one that is taken looks better than it is
 
 } // namespace
 
@@ -104,6 +105,7 @@ SmoothedValue VertexSmoothing::Worker::at(std::uint32_t vertex, std::span<const 
     seen_[vertex] = round_;
     addRing(values, vertex);
     SmoothedValue best{RgbSum(values[vertex].value), RgbSum(values[vertex].variance)};
+    SmoothedValue previous = best;
     RgbSum lowest(0.0), highest(0.0);
     for (int ring = 1; ring <= kMostRings && !next_.empty(); ++ring) {
         addRing(values, vertex);
@@ -118,10 +120,13 @@ SmoothedValue VertexSmoothing::Worker::at(std::uint32_t vertex, std::span<const 
         lowest = glm::max(lowest, wider.value - reach);
         highest = glm::min(highest, wider.value + reach);
         if (lowest.x > highest.x || lowest.y > highest.y || lowest.z > highest.z) break;
-        if (sumOf(wider.variance) > sumOf(best.variance)) continue;
-        const RgbSum change = wider.value - best.value;
-        const RgbSum bias = glm::max(change * change - (best.variance - wider.variance), RgbSum(0.0));
-        best = {wider.value, wider.variance + 0.25 * bias};
+        // What light that curves adds to a fit grows with the square of its reach: of it the last ring brought so much.
+        const RgbSum change = wider.value - previous.value;
+        const RgbSum noise = glm::max(previous.variance - wider.variance, RgbSum(0.0));
+        const double growth = ring * ring / (2.0 * ring - 1.0);
+        const RgbSum bias = growth * growth * glm::max(change * change - noise, RgbSum(0.0));
+        best = {wider.value, kChosen * (wider.variance + change * change + bias)};
+        previous = wider;
     }
     return best;
 }

@@ -21,7 +21,7 @@ struct SmoothedValue {
 
 /// Values at vertices from those found there and around: a linear function of the place, fitted to the vertices that are no more
 /// than k edges away on the same smoothing side, k as large as the fits to smaller neighbourhoods allow: as long as the intervals
-/// of all of them, plus and minus two standard errors, have a point in common. So values that vary evenly are averaged over
+/// of all of them, plus and minus .7 standard errors, have a point in common. So values that vary evenly are averaged over
 /// many vertices, and those beside an edge of light over few or none.
 ///
 /// Intersection of confidence intervals: A. Goldenshluger, A. Nemirovski, "On spatially adaptive estimation of nonparametric

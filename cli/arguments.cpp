@@ -47,10 +47,11 @@ void addTransportArguments(CLI::App& command, TransportArguments& a) {
     addNumber(command, "--crease-angle", a.creaseAngle, "Light is not averaged across sharper edges [30]", "DEGREES",
               0.0, 180.0)
         ->group("Solution");
-    addNumber(command, "--gather-error", a.gatherError,
-              "Aimed at where light is gathered: standard error at a point, relative to its light, 1e-4 to 1 [0.01; "
-              "probe: 0.003]",
-              "E", 1e-4, 1.0)
+    addNumber(
+        command, "--gather-error", a.gatherError,
+        "Aimed at where light is gathered: standard error at a point, relative to its light, 1e-4 to 1 [0.01; probe: "
+        "0.003; half with --quality high]",
+        "E", 1e-4, 1.0)
         ->group("Solution");
     addLightArguments(command, a.light);
     addSolverArguments(command, a);
@@ -148,7 +149,7 @@ ReconstructionOptions reconstructionOptions(const TransportArguments& a) {
 }
 
 FinalGatherOptions gatherOptions(const TransportArguments& a, const RunArguments& run, double error) {
-    return {.error = a.gatherError.value_or(error), .seed = run.seed};
+    return {.error = a.gatherError.value_or(qualityOf(a.quality).gatherErrors * error), .seed = run.seed};
 }
 
 namespace {

@@ -106,7 +106,7 @@ void refuseInstantRadiosity(const TransportArguments& arguments);
 CheckpointOptions checkpointOptions(const TransportArguments& arguments);
 SolveOptions solveOptions(const TransportArguments& arguments, const RunArguments& run);
 ReconstructionOptions reconstructionOptions(const TransportArguments& arguments);
-/// `error`: aimed at unless told otherwise.
+/// `error`: aimed at in normal quality unless told otherwise.
 FinalGatherOptions gatherOptions(const TransportArguments& arguments, const RunArguments& run,
                                  double error = FinalGatherOptions{}.error);
 inline constexpr double kProbeError = 0.003; //!< sensors are few

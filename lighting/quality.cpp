@@ -10,9 +10,9 @@ namespace lambert {
 
 namespace {
 
-constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024, 512},
-                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096, 4096},
-                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768, 16384}};
+constexpr std::array kQualities{Quality{"preview", 0.2, 64, 0.2e9, 1e-3, 1024, 512, 1.0},
+                                Quality{"normal", 1.0, 128, 1.3e9, 1e-4, 4096, 4096, 1.0},
+                                Quality{"high", 4.0, 192, 1.2e10, 1e-5, 32768, 16384, 0.5}};
 
 } // namespace
 

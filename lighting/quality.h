@@ -15,6 +15,7 @@ struct Quality {
     double tolerance;        //!< of the solver
     std::uint32_t particles; //!< of instant radiosity
     std::uint32_t skyRays;   //!< see DirectLightOptions
+    double gatherErrors;     //!< of the errors that normal aims at where light is gathered
 };
 
 /// preview, normal or high; a better one is never worse. Throws UsageError for other names.

@@ -149,10 +149,13 @@ class TheCornellBox(ProbeTest):
         rows = self.probe(DATA / "cornell_box.obj", "".join(",".join(map(repr, point)) + "\n" for point in metres))
         errors = [relative_rms([row[k] for row in rows], [row[k] for row in reference]) for k in (6, 7, 8)]
         print("RMS error at 408 points over mean, r g b:", " ".join(f"{100 * error:.2f} %" for error in errors))
-        # Measured: 0.36, 0.30, 0.32 %. Of it the reference's noise is 0.14 %; the rest depends a little on where the mesh puts its
-        # vertices, as light that was reflected is that of patches.
+        # Measured: 0.30, 0.25, 0.27 %, of which the reference's noise is 0.14 %. Stated are 0.3 %, which at 408 points scatter by a
+        # thirtieth of themselves; a third more leaves room for what other processors round otherwise.
         for error in errors:
-            self.assertLess(error, 0.006)
+            self.assertLess(error, 0.004)
+        within = [abs(sum(row[6:9]) - sum(right[6:9])) <= 2 * math.hypot(sum(row[9:12]), sum(right[9:12]))
+                  for row, right in zip(rows, reference)]
+        self.assertGreaterEqual(sum(within), 0.95 * len(within))
 
 
 if __name__ == "__main__":
