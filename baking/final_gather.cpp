@@ -4,11 +4,13 @@
 #include "core/orthonormal_basis.h"
 #include "core/random.h"
 #include "core/warps.h"
+#include "meshing/patch_offset.h"
 #include "scene/surface.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +79,16 @@ void aim(int left, int top, int cells, std::uint32_t index, const OrthonormalBas
 void checkFinalGather(const FinalGatherOptions& options) {
     if (!(options.error >= 1e-4 && options.error <= 1.0))
         throw UsageError(fmt::format("gather error: found {}, allowed are 1e-4 to 1", options.error));
+}
+
+GatherPoint pointInside(const RayCaster& rays, const PatchMesh& mesh, std::uint32_t patch, const glm::vec3& position,
+                        float share) {
+    const float lift = patchOriginOffset(rays, mesh, patch);
+    const glm::vec3 inward = mesh.centroid[patch] - position;
+    const float length = glm::length(inward);
+    const float step = std::min(length, share * length + 4.0F * lift);
+    const glm::vec3 inside = length > 0.0F ? position + step / length * inward : position;
+    return {inside, mesh.normal[patch], lift};
 }
 
 void GatheredLight::Part::add(const RgbSum& value, const RgbSum& itsVariance, double count) {

@@ -38,6 +38,11 @@ struct GatherPoint {
     float lift;         //!< rays begin so far above it, metres
 };
 
+/// A point of a patch, or of its border, moved by `share` of the way to the patch's centre: one at a wall's foot is neither before nor
+/// behind the wall, a little inside it is.
+GatherPoint pointInside(const RayCaster& rays, const PatchMesh& mesh, std::uint32_t patch, const glm::vec3& position,
+                        float share = 1e-3F);
+
 /// The light at a point, as far as it is known.
 struct GatheredLight {
     struct Part {

@@ -2,7 +2,6 @@
 
 #include "baking/reconstruction.h"
 #include "core/parallel.h"
-#include "meshing/patch_offset.h"
 
 #include <glm/geometric.hpp>
 
@@ -19,8 +18,6 @@ constexpr float kOnSurface = 1e-4F; ///< of the scene's diagonal
 constexpr double kOnlyBacks =
     1e-3;                        ///< of its rays: a point of which no more meet anything but backs is inside something
 constexpr double kLeaked = 0.99; ///< of the light: an error as large leaves nothing
-constexpr float kFromBorder =
-    1e-3F; ///< of the way to its centre: a point of a patch's border belongs to that patch alone
 
 struct SurfacePoint {
     std::uint32_t patch;
@@ -54,16 +51,6 @@ ProbeReading unknown(bool onSurface) {
     return {nan, nan, onSurface};
 }
 
-/// A point of a wall's foot is neither before nor behind the wall: a thousandth of the way to its patch's centre it is.
-GatherPoint placeOf(const SolvedScene& scene, const SurfacePoint& point) {
-    const float lift = patchOriginOffset(*scene.rays, scene.mesh, point.patch);
-    const glm::vec3 inward = scene.mesh.centroid[point.patch] - point.position;
-    const float length = glm::length(inward);
-    const float step = std::min(length, kFromBorder * length + 4.0F * lift);
-    const glm::vec3 inside = length > 0.0F ? point.position + step / length * inward : point.position;
-    return {inside, scene.mesh.normal[point.patch], lift};
-}
-
 } // namespace
 
 std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalGatherOptions& options,
@@ -81,8 +68,8 @@ std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalG
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 normal = glm::normalize(points[i].normal);
             const auto surface = nearestFront(scene, points[i].position, normal, reach);
-            const GatherPoint place =
-                surface ? placeOf(scene, *surface) : GatherPoint{points[i].position, normal, lift};
+            const GatherPoint place = surface ? pointInside(*scene.rays, scene.mesh, surface->patch, surface->position)
+                                              : GatherPoint{points[i].position, normal, lift};
             const GatheredLight light = gather.at(place, static_cast<std::uint32_t>(i));
             const RgbSum irradiance = light.irradiance();
             const RgbSum error = light.standardError();

@@ -11,7 +11,6 @@ namespace lambert {
 
 namespace {
 
-constexpr float kFromBorder = 1e-3F; ///< of the way to a patch's centre
 constexpr float kSamePlane = 0.999F; ///< cosine of the angle between the normals of patches of one plane
 
 } // namespace
@@ -45,16 +44,6 @@ bool VertexPlaces::isClosedFan(std::size_t vertex) const {
     });
 }
 
-VertexPlace VertexPlaces::placeOn(std::size_t vertex, std::uint32_t patch, float share) const {
-    const float lift = patchOriginOffset(rays_, mesh_, patch);
-    const glm::vec3& position = baked_.positions[vertex];
-    const glm::vec3 inward = mesh_.centroid[patch] - position;
-    const float length = glm::length(inward);
-    const float step = std::min(length, share * length + 4.0F * lift);
-    const glm::vec3 at = length > 0.0F ? position + step / length * inward : position;
-    return {{at, mesh_.normal[patch], lift}, patch, 1.0};
-}
-
 void VertexPlaces::of(std::size_t vertex, std::vector<VertexPlace>& places) const {
     places.clear();
     const auto corners = around_.of(vertex);
@@ -79,8 +68,7 @@ void VertexPlaces::of(std::size_t vertex, std::vector<VertexPlace>& places) cons
             same->weight += weight;
             continue;
         }
-        places.push_back(placeOn(vertex, corner / 4, kFromBorder));
-        places.back().weight = weight;
+        places.push_back({pointInside(rays_, mesh_, corner / 4, baked_.positions[vertex]), corner / 4, weight});
     }
     for (VertexPlace& place : places)
         place.weight = all > 0.0 ? place.weight / all : 1.0 / static_cast<double>(places.size());
@@ -90,7 +78,7 @@ VertexPlace VertexPlaces::inside(std::size_t vertex, float share) const {
     const auto corners = around_.of(vertex);
     const auto best = std::ranges::max_element(
         corners, [&](std::uint32_t a, std::uint32_t b) { return covered_[a / 4] > covered_[b / 4]; });
-    return placeOn(vertex, *best / 4, share);
+    return {pointInside(rays_, mesh_, *best / 4, baked_.positions[vertex], share), *best / 4, 1.0};
 }
 
 } // namespace lambert

@@ -30,7 +30,6 @@ private:
     bool isOpen(std::uint32_t corner) const;
     bool isClosedFan(std::size_t vertex) const;
     double weightOf(std::uint32_t corner) const;
-    VertexPlace placeOn(std::size_t vertex, std::uint32_t patch, float share) const;
 
     const RayCaster& rays_;
     const PatchMesh& mesh_;
