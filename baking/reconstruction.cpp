@@ -46,14 +46,14 @@ BakedMesh makeVertices(const PatchMesh& mesh, float creaseAngle, std::size_t* se
     return baked;
 }
 
-/// What the patches about a vertex have, weighted by area, angle and openness.
-struct VertexMeans {
-    RgbSum irradiance{0.0}, reflectance{0.0}, emitted{0.0};
+/// What a vertex reflects and emits, by the means below.
+struct VertexOptics {
+    Rgb reflectance{0.0F}, emitted{0.0F};
 };
 
-/// The mesh without its light; of each vertex the means, and its normal.
-BakedMesh withoutLight(const LitPatches& lit, const ReconstructionOptions& options, std::size_t* separatedFaces,
-                       std::vector<VertexMeans>& means) {
+/// Means over the patches about a vertex, weighted by area, angle and openness; `vertexOptics`, if given, becomes #vertices.
+BakedMesh averaged(const LitPatches& lit, const ReconstructionOptions& options, std::size_t* separatedFaces,
+                   std::vector<VertexOptics>* vertexOptics) {
     const auto& [mesh, optics, scene, solution, unused] = lit;
     BakedMesh baked = makeVertices(mesh, options.creaseAngle, separatedFaces);
     baked.origin = scene.origin;
@@ -70,10 +70,12 @@ BakedMesh withoutLight(const LitPatches& lit, const ReconstructionOptions& optio
 
     const VertexCorners around(mesh, baked);
     const std::size_t count = baked.positions.size();
-    means.resize(count);
+    if (vertexOptics != nullptr) vertexOptics->reserve(count);
+    baked.irradiance.reserve(count);
+    baked.radiosity.reserve(count);
     baked.normals.reserve(count);
     for (std::size_t vertex = 0; vertex < count; ++vertex) {
-        VertexMeans& mean = means[vertex];
+        RgbSum irradiance(0.0), reflectance(0.0), emitted(0.0);
         glm::dvec3 normal(0.0);
         double weights = 0.0;
         for (const std::uint32_t corner : around.of(vertex)) {
@@ -82,32 +84,21 @@ BakedMesh withoutLight(const LitPatches& lit, const ReconstructionOptions& optio
             const double whole =
                 static_cast<double>(mesh.area[patch]) * angleAt(mesh, patch, static_cast<int>(corner % 4));
             const double weight = whole * openness;
-            mean.irradiance += weight * solution.irradiance[patch];
-            mean.reflectance += weight * RgbSum(optics.reflectance[patch]);
-            mean.emitted += weight * RgbSum(optics.emittedRadiosity[patch]);
+            irradiance += weight * solution.irradiance[patch];
+            reflectance += weight * RgbSum(optics.reflectance[patch]);
+            emitted += weight * RgbSum(optics.emittedRadiosity[patch]);
             normal += whole * glm::dvec3(mesh.normal[patch]);
             weights += weight;
         }
         const double share = weights > 0.0 ? 1.0 / weights : 0.0;
-        mean.irradiance =
-            glm::max(share * mean.irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
-        mean.reflectance *= share;
-        mean.emitted *= share;
+        const RgbSum e = glm::max(share * irradiance, RgbSum(0.0)); // the noise of random lines may come out below 0
+        baked.irradiance.emplace_back(e);
+        baked.radiosity.emplace_back(share * emitted + share * reflectance * e);
+        if (vertexOptics != nullptr) vertexOptics->push_back({Rgb(share * reflectance), Rgb(share * emitted)});
         const double length = glm::length(normal);
         baked.normals.push_back(length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F, 0.0F, 1.0F));
     }
     return baked;
-}
-
-void addLight(const std::vector<VertexMeans>& means, BakedMesh& baked) {
-    baked.irradiance.clear();
-    baked.radiosity.clear();
-    baked.irradiance.reserve(means.size());
-    baked.radiosity.reserve(means.size());
-    for (const VertexMeans& mean : means) {
-        baked.irradiance.emplace_back(mean.irradiance);
-        baked.radiosity.emplace_back(mean.emitted + mean.reflectance * mean.irradiance);
-    }
 }
 
 GatherReport reportOf(const std::vector<VertexLight>& vertices) {
@@ -129,10 +120,7 @@ GatherReport reportOf(const std::vector<VertexLight>& vertices) {
 } // namespace
 
 BakedMesh reconstructAverage(const LitPatches& lit, const ReconstructionOptions& options, std::size_t* separatedFaces) {
-    std::vector<VertexMeans> means;
-    BakedMesh baked = withoutLight(lit, options, separatedFaces, means);
-    addLight(means, baked);
-    return baked;
+    return averaged(lit, options, separatedFaces, nullptr);
 }
 
 std::vector<Rgb> varianceWithin(const LitPatches& lit, const BakedMesh& average) {
@@ -156,16 +144,17 @@ std::vector<Rgb> varianceWithin(const LitPatches& lit, const BakedMesh& average)
 BakedMesh reconstructGather(const LitPatches& lit, const RayCaster& rays, const LightSources& sources,
                             const ReconstructionOptions& options, const FinalGatherOptions& gatherOptions,
                             Progress& progress, GatherReport* report, std::size_t* separatedFaces) {
-    std::vector<VertexMeans> means;
-    BakedMesh baked = withoutLight(lit, options, separatedFaces, means);
-    addLight(means, baked);
+    std::vector<VertexOptics> optics;
+    BakedMesh baked = averaged(lit, options, separatedFaces, &optics);
     const FinalGather gather(rays, lit, sources, varianceWithin(lit, baked), gatherOptions);
     const VertexPlaces places(rays, lit.mesh, baked, lit.solution.covered);
     const std::vector<VertexLight> found = gatherAtVertices(gather, places, baked, progress);
-    for (std::size_t vertex = 0; vertex < found.size(); ++vertex)
-        if (found[vertex].rays > 0) means[vertex].irradiance = found[vertex].irradiance;
+    for (std::size_t vertex = 0; vertex < found.size(); ++vertex) {
+        if (found[vertex].rays == 0) continue;
+        baked.irradiance[vertex] = Rgb(found[vertex].irradiance);
+        baked.radiosity[vertex] = optics[vertex].emitted + optics[vertex].reflectance * baked.irradiance[vertex];
+    }
     if (report != nullptr) *report = reportOf(found);
-    addLight(means, baked);
     return baked;
 }
 
