@@ -17,7 +17,7 @@ BakedScene bakeScene(const Scene& scene, const BakeOptions& options, Progress& p
     result.lights = std::move(lights);
 
     const Stopwatch watch;
-    const LitPatches lit{result.mesh, result.optics, *result.scene, result.solution};
+    const LitPatches lit = litPatches(result);
     if (options.gather) {
         result.baked = reconstructGather(lit, *result.rays, lightsOf(*result.scene), options.reconstruction,
                                          *options.gather, progress, &result.gather.emplace(), &result.separatedFaces);

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace lambert {
@@ -79,6 +78,12 @@ void aim(int left, int top, int cells, std::uint32_t index, const OrthonormalBas
 void checkFinalGather(const FinalGatherOptions& options) {
     if (!(options.error >= 1e-4 && options.error <= 1.0))
         throw UsageError(fmt::format("gather error: found {}, allowed are 1e-4 to 1", options.error));
+}
+
+LitPatches litPatches(const SolvedScene& scene) {
+    LitPatches lit{scene.mesh, scene.optics, *scene.scene, scene.solution};
+    if (const StochasticSolution* lines = scene.stochastic()) lit.standardError = lines->standardError;
+    return lit;
 }
 
 GatherPoint pointInside(const RayCaster& rays, const PatchMesh& mesh, std::uint32_t patch, const glm::vec3& position,

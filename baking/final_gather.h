@@ -31,6 +31,8 @@ struct LitPatches {
     std::span<const Rgb> standardError{}; //!< #patches, of the irradiance; empty: unknown
 };
 
+LitPatches litPatches(const SolvedScene& scene);
+
 /// Where light is gathered.
 struct GatherPoint {
     glm::vec3 position; //!< metres

@@ -57,9 +57,7 @@ std::vector<ProbeReading> probeIrradiance(const SolvedScene& scene, const FinalG
                                           std::span<const ProbePoint> points, Progress& progress) {
     const float reach = kOnSurface * scene.rays->bounds().diagonal();
     const float lift = scene.rays->originOffset(0.0F);
-    const StochasticSolution* const lines = scene.stochastic();
-    const LitPatches lit{scene.mesh, scene.optics, *scene.scene, scene.solution,
-                         lines != nullptr ? std::span<const Rgb>(lines->standardError) : std::span<const Rgb>()};
+    const LitPatches lit = litPatches(scene);
     const FinalGather gather(*scene.rays, lit, lightsOf(*scene.scene), varianceWithin(lit, reconstructAverage(lit, {})),
                              options);
     std::vector<ProbeReading> readings(points.size());

@@ -131,8 +131,11 @@ private:
 
     /// Sets the result of all vertices (those near a refined one see it too); those of `open` that are not good enough yet.
     std::vector<std::uint32_t> smoothed(const std::vector<std::uint32_t>& open) {
-        parallelFor(states_.size(), 256, [&](std::size_t begin, std::size_t end, int) {
-            VertexSmoothing::Worker worker(smoothing_);
+        // One for each thread: each is as large as the mesh.
+        std::vector<VertexSmoothing::Worker> workers(static_cast<std::size_t>(threadCount()),
+                                                     VertexSmoothing::Worker(smoothing_));
+        parallelFor(states_.size(), 256, [&](std::size_t begin, std::size_t end, int thread) {
+            VertexSmoothing::Worker& worker = workers[static_cast<std::size_t>(thread)];
             for (std::size_t vertex = begin; vertex < end; ++vertex) {
                 if (reflected_[vertex].rays == 0) continue;
                 const VertexState& state = states_[vertex];

@@ -87,7 +87,9 @@ void addBakeCommand(CLI::App& program, CommandRun& run) {
         ->excludes(output);
     command.add_option("--format", arguments->format, "glb, gltf, ply or obj [by the name's end; glb in a folder]")
         ->check(CLI::IsMember({"glb", "gltf", "ply", "obj"}));
-    command.add_option("--reconstruction", arguments->reconstruction, "Of light at the vertices: average of the patches about each, or gathered there [average]")
+    command
+        .add_option("--reconstruction", arguments->reconstruction,
+                    "Of light at the vertices: average of the patches about each, or gathered there [average]")
         ->check(CLI::IsMember({"average", "gather"}));
     command.add_option("--quantity", arguments->quantity, "What the colours show: radiosity or irradiance [radiosity]")
         ->check(CLI::IsMember({"radiosity", "irradiance"}));
